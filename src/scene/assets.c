@@ -1,0 +1,160 @@
+/* The files that a scene names: meshes, particles, pictures. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "base/file.h"
+#include "base/hash.h"
+#include "scene/environment.h"
+#include "scene/load.h"
+#include "scene/mesh.h"
+#include "scene/particle_file.h"
+
+/* Readers of files name the file; we say where in the scene it is named. So their error is caught, and told once, with both. */
+struct listener {
+    struct sf_log log;
+    const struct sf_param_reader *reader;
+    char error[1024];
+};
+
+static void listen(void *user, enum sf_log_level level, const char *message)
+{
+    struct listener *listener = user;
+
+    if (level == SF_LOG_ERROR)
+        sf_param_clean(message, listener->error, sizeof listener->error);
+    else
+        sf_log(listener->reader->log, level, "%s", message);
+}
+
+static struct listener listener_for(const struct sf_param_reader *reader)
+{
+    struct listener listener = {{listen, NULL, reader->log ? reader->log->level : SF_LOG_ERROR}, reader, ""};
+
+    return listener;
+}
+
+static enum sf_status retell(const struct listener *listener, enum sf_status status)
+{
+    const struct sf_param_reader *reader = listener->reader;
+
+    if (status == SF_OK)
+        return SF_OK;
+    if (status == SF_ERROR_MEMORY)
+        return sf_fail(reader->log, status, "%s: %s: %s", reader->name, reader->pointer, listener->error);
+    return sf_param_reader_fail(reader, "%s", listener->error[0] ? listener->error : "cannot be read");
+}
+
+static void stir(struct sf_scene *scene, uint64_t hash)
+{
+    scene->hash = sf_hash_bytes(&hash, sizeof hash, scene->hash);
+}
+
+static enum sf_status out_of_memory(const struct sf_param_reader *reader)
+{
+    return sf_fail(reader->log, SF_ERROR_MEMORY, "%s: out of memory", reader->name);
+}
+
+/* The index of the mesh in the file, reading it when it is the first to be asked for. */
+static enum sf_status find_mesh(struct sf_scene *scene, const struct sf_param_reader *reader, const char *file,
+                                uint32_t *index)
+{
+    struct listener listener = listener_for(reader);
+    struct sf_mesh *mesh = &scene->meshes[scene->mesh_count];
+    enum sf_status status;
+    uint64_t hash = 0;
+    char *path;
+
+    for (uint32_t i = 0; i < scene->mesh_count; i++) {
+        if (strcmp(scene->meshes[i].file, file) == 0) {
+            *index = i;
+            return SF_OK;
+        }
+    }
+    if (scene->mesh_count == SF_MESHES_MAX)
+        return sf_param_reader_fail(reader, "more than %d different mesh files", SF_MESHES_MAX);
+    if (!(path = sf_path_beside(scene->path, file)))
+        return out_of_memory(reader);
+    listener.log.user = &listener;
+    status = retell(&listener, sf_mesh_read(path, &scene->arena, &listener.log, mesh, &hash));
+    free(path);
+    if (status != SF_OK)
+        return status;
+    mesh->file = file;
+    stir(scene, hash);
+    *index = scene->mesh_count++;
+    return SF_OK;
+}
+
+static enum sf_status load_list(struct sf_scene *scene, const struct sf_param_reader *reader,
+                                struct sf_emitter *emitter)
+{
+    struct listener listener = listener_for(reader);
+    char *path = sf_path_beside(scene->path, emitter->file);
+    enum sf_status status;
+    uint64_t hash = 0;
+
+    if (!path)
+        return out_of_memory(reader);
+    listener.log.user = &listener;
+    status = retell(&listener, sf_particle_file_read(path, &scene->arena, &listener.log, &emitter->list,
+                                                     &emitter->list_count, &hash));
+    free(path);
+    if (status == SF_OK)
+        stir(scene, hash);
+    return status;
+}
+
+static enum sf_status load_environment(struct sf_scene *scene, struct sf_param_reader *reader)
+{
+    struct sf_environment *environment = &scene->environment;
+    struct listener listener = listener_for(reader);
+    bool cube = environment->kind == SF_ENVIRONMENT_CUBE;
+    uint32_t count = cube ? 6 : environment->kind == SF_ENVIRONMENT_LATLONG ? 1 : 0, bad = 0;
+    char *paths[6] = {NULL};
+    enum sf_status status = SF_OK;
+
+    for (uint32_t i = 0; i < count; i++)
+        if (!(paths[i] = sf_path_beside(scene->path, cube ? environment->files[i] : environment->file)))
+            status = out_of_memory(reader);
+    if (count && status == SF_OK) {
+        listener.log.user = &listener;
+        status = sf_environment_load(environment, paths, &scene->arena, &listener.log, &bad);
+        if (cube)
+            sf_param_reader_at(reader, "/environment/files/%u", (unsigned)bad);
+        else
+            sf_param_reader_at(reader, "/environment/file");
+        status = retell(&listener, status);
+    }
+    for (uint32_t i = 0; i < count; i++)
+        free(paths[i]);
+    if (status != SF_OK)
+        return status;
+    if (environment->pixels)
+        stir(scene, sf_hash_bytes(environment->pixels,
+                                  (size_t)environment->width * environment->height * 3 * sizeof(float), 0));
+    sf_environment_project(environment);
+    return SF_OK;
+}
+
+enum sf_status sf_scene_load_assets(struct sf_scene *scene, struct sf_param_reader *reader)
+{
+    enum sf_status status = SF_OK;
+
+    for (uint32_t i = 0; i < scene->object_count && status == SF_OK; i++) {
+        struct sf_object *object = &scene->objects[i];
+
+        sf_param_reader_at(reader, "/objects/%u/file", (unsigned)i);
+        if (object->kind == SF_OBJECT_MESH)
+            status = find_mesh(scene, reader, object->file, &object->mesh);
+    }
+    for (uint32_t i = 0; i < scene->emitter_count && status == SF_OK; i++) {
+        struct sf_emitter *emitter = &scene->emitters[i];
+
+        sf_param_reader_at(reader, "/emitters/%u/file", (unsigned)i);
+        if (emitter->kind == SF_EMITTER_MESH)
+            status = find_mesh(scene, reader, emitter->file, &emitter->mesh);
+        else if (emitter->file)
+            status = load_list(scene, reader, emitter);
+    }
+    return status == SF_OK ? load_environment(scene, reader) : status;
+}

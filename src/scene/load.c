@@ -1,0 +1,159 @@
+#include "scene/load.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include "base/file.h"
+#include "base/hash.h"
+#include "scene/table.h"
+
+enum { SCENE_MIB_MAX = 64, REASON_BYTES = 256 };
+#define SCENE_BYTES_MAX ((size_t)SCENE_MIB_MAX << 20)
+
+static json_t *parse_json(const char *name, const char *text, size_t bytes, const struct sf_log *log)
+{
+    char reason[REASON_BYTES];
+    json_error_t error;
+    json_t *tree;
+
+    if (bytes >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) { /* the mark that some editors put before UTF-8 */
+        text += 3;
+        bytes -= 3;
+    }
+    if (bytes == 0) {
+        sf_fail(log, SF_ERROR_SCENE, "%s: the file is empty; a scene is a JSON object", name);
+        return NULL;
+    }
+    tree = json_loadb(text, bytes, JSON_REJECT_DUPLICATES, &error);
+    if (!tree) {
+        sf_param_clean(error.text, reason, sizeof reason);
+        sf_fail(log, SF_ERROR_SCENE, "%s:%d:%d: %s", name, error.line, error.column, reason);
+    } else if (!json_is_object(tree)) {
+        sf_fail(log, SF_ERROR_SCENE, "%s: a scene is a JSON object: { ... }", name);
+        json_decref(tree);
+        tree = NULL;
+    }
+    return tree;
+}
+
+/* Takes comments and $schema out of the tree, so that they do not count in the hash. The parser has bounded the depth. */
+static void strip(json_t *tree)
+{
+    const char *key;
+    json_t *value;
+    size_t i;
+
+    json_object_del(tree, "//");
+    json_object_foreach (tree, key, value)
+        strip(value);
+    json_array_foreach (tree, i, value)
+        if (json_is_object(value) || json_is_array(value))
+            strip(value);
+}
+
+static enum sf_status hash_tree(struct sf_scene *scene, json_t *tree, const struct sf_log *log)
+{
+    char *text;
+
+    json_object_del(tree, "$schema");
+    strip(tree);
+    if (!(text = json_dumps(tree, JSON_COMPACT | JSON_SORT_KEYS)))
+        return sf_fail(log, SF_ERROR_MEMORY, "%s: out of memory", scene->path);
+    scene->hash = sf_hash_bytes(text, strlen(text), 0);
+    free(text);
+    return SF_OK;
+}
+
+/* From the parsed tree to the scene. */
+static enum sf_status read_tree(struct sf_scene *scene, json_t *tree, const char *const *sets, uint32_t set_count,
+                                const struct sf_log *log)
+{
+    struct sf_param_reader reader = {.name = scene->path, .log = log, .arena = &scene->arena};
+    struct sf_arena arena;
+    enum sf_status status = SF_OK;
+    const char *path = scene->path;
+
+    if (set_count && !(reader.sets = sf_arena_alloc(&scene->arena, set_count * sizeof *reader.sets)))
+        return sf_fail(log, SF_ERROR_MEMORY, "%s: out of memory", scene->path);
+    for (uint32_t i = 0; i < set_count && status == SF_OK; i++) {
+        reader.sets[i].text = sets[i];
+        status = sf_param_apply_set(&reader, &sf_scene_group, tree, &reader.sets[i]);
+    }
+    if (status != SF_OK)
+        return status;
+    reader.set_count = set_count;
+    /* Reading begins with the defaults of everything, so what is not of the table is put back. */
+    arena = scene->arena;
+    reader.arena = &arena;
+    status = sf_param_read(&reader, &sf_scene_group, tree, scene);
+    reader.arena = &scene->arena;
+    scene->arena = arena;
+    scene->path = path;
+    if (status == SF_OK)
+        status = hash_tree(scene, tree, log);
+    if (status == SF_OK)
+        status = sf_scene_check(scene, &reader);
+    if (status == SF_OK)
+        status = sf_scene_load_assets(scene, &reader);
+    if (status == SF_OK)
+        status = sf_scene_check_particles(scene, &reader);
+    return status;
+}
+
+enum sf_status sf_scene_parse(const char *name, const char *text, size_t bytes, const char *const *sets,
+                              uint32_t set_count, const struct sf_log *log, struct sf_scene **out)
+{
+    struct sf_scene *scene;
+    enum sf_status status;
+    json_t *tree;
+
+    *out = NULL;
+    if (bytes > SCENE_BYTES_MAX)
+        return sf_fail(log, SF_ERROR_SCENE,
+                       "%s: %zu bytes; a scene holds at most %d MiB. Long lists of particles go into CSV or PLY files",
+                       name, bytes, SCENE_MIB_MAX);
+    if (!(tree = parse_json(name, text, bytes, log)))
+        return SF_ERROR_SCENE;
+    scene = calloc(1, sizeof *scene);
+    if (scene)
+        scene->path = sf_arena_strdup(&scene->arena, name);
+    if (scene && scene->path)
+        status = read_tree(scene, tree, sets, set_count, log);
+    else
+        status = sf_fail(log, SF_ERROR_MEMORY, "%s: out of memory", name);
+    json_decref(tree);
+    if (status == SF_OK)
+        *out = scene;
+    else
+        sf_scene_destroy(&scene);
+    return status;
+}
+
+enum sf_status sf_scene_load(const char *path, const char *const *sets, uint32_t set_count, const struct sf_log *log,
+                             struct sf_scene **scene)
+{
+    enum sf_status status;
+    struct stat info;
+    char *text = NULL;
+    size_t bytes = 0;
+
+    *scene = NULL;
+    if (stat(path, &info) == 0 && S_ISREG(info.st_mode) && info.st_size > (off_t)SCENE_BYTES_MAX)
+        return sf_fail(log, SF_ERROR_SCENE,
+                       "%s: %lld bytes; a scene holds at most %d MiB. Long lists of particles go into CSV or PLY files",
+                       path, (long long)info.st_size, SCENE_MIB_MAX);
+    if ((status = sf_file_read(path, SCENE_BYTES_MAX, log, &text, &bytes)) != SF_OK)
+        return status;
+    status = sf_scene_parse(path, text, bytes, sets, set_count, log, scene);
+    free(text);
+    return status;
+}
+
+void sf_scene_destroy(struct sf_scene **scene)
+{
+    if (!scene || !*scene)
+        return;
+    sf_arena_finish(&(*scene)->arena);
+    free(*scene);
+    *scene = NULL;
+}

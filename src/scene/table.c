@@ -1,0 +1,157 @@
+/* The settings, the medium, the environment, and the whole. */
+#include "scene/table_inner.h"
+
+static const struct sf_param medium_rows[] = {
+    {ROW_FLOAT("extinction", struct sf_medium, extinction, 4, 0, 1e4, "1/m",
+               "extinction of particles whose emitter states none"),
+     .rebuild = SF_REBUILD_SIM},
+    {ROW_COLOR("albedo", struct sf_medium, albedo, 0.95, 0.95, 0.95, 1, "", "share of the extinction that scatters")},
+    {ROW_FLOAT("g", struct sf_medium, g, 0, -0.99, 0.99, "",
+               "Henyey-Greenstein: forward above 0, backward below, even at 0")},
+    {ROW_COLOR("emission", struct sf_medium, emission, 0, 0, 0, 1e6, "W/(m2 sr)",
+               "source of its own, times the extinction")},
+};
+static const struct sf_param_group medium_group =
+    GROUP("medium", struct sf_medium, medium_rows, "What all the smoke is made of.");
+
+static const struct sf_param ramp_rows[] = {
+    {ROW_FLOAT("at", struct sf_ramp_key, at, 0, 0, 1, "", "share of the particle's life, ascending from key to key"),
+     .required = true},
+    {ROW_COLOR("color", struct sf_ramp_key, color, 1, 1, 1, 1, "", "what the medium's albedo is multiplied by"),
+     .required = true},
+};
+static const struct sf_param_group ramp_group = GROUP(
+    "ramp", struct sf_ramp_key, ramp_rows, "A colour at a moment of a particle's life; linear between, constant outside.");
+
+static const char *const environment_kinds[] = {"sky", "color", "latlong", "cube", NULL};
+static const struct sf_param environment_rows[] = {
+    {ROW_ENUM("type", struct sf_environment, kind, environment_kinds, SF_ENVIRONMENT_SKY,
+              "a gradient, one colour, a panorama, six pictures"),
+     .rebuild = SF_REBUILD_ASSETS},
+    {ROW_COLOR("zenith", struct sf_environment, zenith, 0.25, 0.42, 0.75, 1e6, "W/(m2 sr)", "radiance straight up"),
+     .only_for = "sky", .rebuild = SF_REBUILD_ASSETS},
+    {ROW_COLOR("horizon", struct sf_environment, horizon, 0.62, 0.7, 0.8, 1e6, "W/(m2 sr)", "radiance at eye level"),
+     .only_for = "sky", .rebuild = SF_REBUILD_ASSETS},
+    {ROW_COLOR("ground", struct sf_environment, ground, 0.2, 0.19, 0.17, 1e6, "W/(m2 sr)", "radiance from below"),
+     .only_for = "sky", .rebuild = SF_REBUILD_ASSETS},
+    {ROW_COLOR("color", struct sf_environment, color, 0.5, 0.5, 0.5, 1e6, "W/(m2 sr)", "the same from everywhere"),
+     .only_for = "color", .rebuild = SF_REBUILD_ASSETS},
+    {ROW_STRING("file", struct sf_environment, file, "EXR, HDR or PNG, twice as wide as high, -z in its middle"),
+     .only_for = "latlong", .required = true, .rebuild = SF_REBUILD_ASSETS},
+    {.key = "files", .type = SF_PARAM_FILES, .offset = SF_OFFSET(struct sf_environment, files, sf_param_files),
+     .unit = "", .doc = "EXR, HDR or PNG squares: +x, -x, +y, -y, +z, -z", .only_for = "cube", .required = true,
+     .rebuild = SF_REBUILD_ASSETS},
+    {ROW_FLOAT("intensity", struct sf_environment, intensity, 1, 0, 1e4, "", "multiplies its radiance"),
+     .rebuild = SF_REBUILD_ASSETS},
+    {ROW_FLOAT("rotation", struct sf_environment, rotation, 0, -360, 360, "deg", "turns the pictures about +y"),
+     .only_for = "latlong cube", .rebuild = SF_REBUILD_ASSETS},
+    {ROW_BOOL("visible", struct sf_environment, visible, 1, "drawn behind the scene"), .rebuild = SF_REBUILD_GRAPH},
+    {ROW_COLOR("background", struct sf_environment, background, 0, 0, 0, 1e6, "W/(m2 sr)",
+               "drawn behind the scene when the environment is not visible")},
+};
+static const struct sf_param_group environment_group =
+    GROUP("environment", struct sf_environment, environment_rows,
+          "Light from all around: it gives the ambient light, and the background.");
+
+static const struct sf_param sim_rows[] = {
+    {ROW_INT("seed", struct sf_sim_settings, seed, 1, 0, INT32_MAX, "", "of all randomness: the same seed, the same bits"),
+     .rebuild = SF_REBUILD_SIM},
+    {ROW_INT("capacity", struct sf_sim_settings, capacity, 4096, 1, SF_PARTICLES_MAX, "particles",
+             "live particles at most; what is emitted beyond is lost"),
+     .rebuild = SF_REBUILD_SIM | SF_REBUILD_GRAPH},
+    {ROW_FLOAT("fps", struct sf_sim_settings, fps, 24, 1, 1000, "1/s", "frames a second: frame n is at n/fps"),
+     .rebuild = SF_REBUILD_SIM},
+    {ROW_INT("substeps", struct sf_sim_settings, substeps, 2, 1, 64, "",
+             "fixed steps of the simulation from one frame to the next"),
+     .rebuild = SF_REBUILD_SIM},
+    {ROW_FLOAT("preroll", struct sf_sim_settings, preroll, 0, 0, 600, "s", "simulated before frame 0"),
+     .rebuild = SF_REBUILD_SIM},
+};
+static const struct sf_param_group sim_group =
+    GROUP("sim", struct sf_sim_settings, sim_rows, "How the particles are stepped through time.");
+
+static const char *const tones[] = {"linear", "reinhard", "aces", "neutral", NULL};
+static const struct sf_param output_rows[] = {
+    {ROW_FLOAT("exposure", struct sf_output_settings, exposure, 0, -20, 20, "stops",
+               "for PNG and window; EXR files hold the scene's radiance")},
+    {ROW_ENUM("tone", struct sf_output_settings, tone, tones, SF_TONE_ACES,
+              "curve from radiance to screen, for PNG and window")},
+};
+static const struct sf_param_group output_group =
+    GROUP("output", struct sf_output_settings, output_rows, "How pictures for the eye are made.");
+
+static const struct sf_param shadow_rows[] = {
+    {ROW_INT("map_size", struct sf_shadow_settings, map_size, 512, 16, 8192, "px",
+             "side of the shadow map of scene on scene and on smoke, per light"),
+     .rebuild = SF_REBUILD_GRAPH},
+    {ROW_FLOAT("softness", struct sf_shadow_settings, softness, 1.5, 0, 16, "px", "sigma of the shadow map's blur"),
+     .rebuild = SF_REBUILD_GRAPH},
+    {ROW_FLOAT("exponent", struct sf_shadow_settings, exponent, 40, 1, 80, "",
+               "of the exponential shadow map: larger is sharper, and leaks less light")},
+};
+static const struct sf_param_group shadow_group =
+    GROUP("shadow", struct sf_shadow_settings, shadow_rows, "Shadows of the scene's objects.");
+
+static const char *const resolutions[] = {"full", "half", "quarter", NULL};
+static const struct sf_param thick_rows[] = {
+    {ROW_ENUM("resolution", struct sf_thick_settings, resolution, resolutions, SF_RESOLUTION_HALF,
+              "of the smoke's passes, against the frame's"),
+     .rebuild = SF_REBUILD_GRAPH},
+    {ROW_INT("steps", struct sf_thick_settings, steps, 12, 1, 256, "", "samples along the camera's ray through the smoke")},
+    {ROW_FLOAT("blur", struct sf_thick_settings, blur, 4, 0, 38, "px", "sigma of the camera view's blur, in pixels of the frame"),
+     .rebuild = SF_REBUILD_GRAPH},
+    {ROW_INT("octaves", struct sf_thick_settings, octaves, 1, 1, 4, "",
+             "of multiple scattering; 1: single scattering, as the reference computes it"),
+     .rebuild = SF_REBUILD_GRAPH},
+    {ROW_INT("light_size", struct sf_thick_settings, light_size, 256, 16, 4096, "px", "side of the light's view of the smoke, per light"),
+     .rebuild = SF_REBUILD_GRAPH},
+    {ROW_FLOAT("light_blur", struct sf_thick_settings, light_blur, 2, 0, 9.5, "px", "sigma of the light view's blur, in its own pixels"),
+     .rebuild = SF_REBUILD_GRAPH},
+    {ROW_FLOAT("detail", struct sf_thick_settings, detail, 0.5, 0, 1, "", "how much of the density the atlas modulates"),
+     .rebuild = SF_REBUILD_GRAPH},
+    {ROW_FLOAT("detail_scale", struct sf_thick_settings, detail_scale, 1, 0.05, 64, "", "tiles of the atlas across a particle")},
+    {ROW_FLOAT("density_blur", struct sf_thick_settings, density_blur, 0, 0, 1, "",
+               "0: exact optical depth; 1: the blurred one of the thesis; between: a mix")},
+    {ROW_FLOAT("ambient", struct sf_thick_settings, ambient, 1, 0, 100, "", "multiplies the environment's light in the smoke")},
+    {ROW_FLOAT("thin", struct sf_thick_settings, thin, 0.5, 0, 100, "",
+               "optical depth across a particle below which its surfaces recede from the depth views; 0: never")},
+    {ROW_FLOAT("soft", struct sf_thick_settings, soft, 0, 0, 100, "m",
+               "extra fade of the smoke towards surfaces; 0: none, the smoke is cut there exactly")},
+    {ROW_FLOAT("life_fade", struct sf_thick_settings, life_fade, 0, 0, 16, "",
+               "exponent of the thesis' fade with life; 0: none, emitters fade by themselves")},
+    {ROW_BOOL("scene_shadow", struct sf_thick_settings, scene_shadow, 1, "objects cast shadows on the smoke"),
+     .rebuild = SF_REBUILD_GRAPH},
+    {ROW_BOOL("ground_shadow", struct sf_thick_settings, ground_shadow, 1, "the smoke casts shadows on objects"),
+     .rebuild = SF_REBUILD_GRAPH},
+};
+static const struct sf_param_group thick_group =
+    GROUP("thick", struct sf_thick_settings, thick_rows, "The method thick: thick smoke with volumetric lighting.");
+
+#define ROW_OBJECT(k, f, of, text)                                                                                      \
+    .key = k, .type = SF_PARAM_OBJECT, .offset = offsetof(struct sf_scene, f), .group = &of, .unit = "", .doc = text
+
+static const char *const methods[] = {"none", "thick", NULL};
+static const struct sf_param scene_rows[] = {
+    {ROW_OBJECT("camera", camera, sf_scene_camera_group, "the eye")},
+    {ROW_LIST("lights", struct sf_scene, lights, light_count, sf_scene_light_group, 0, SF_LIGHTS_MAX, "lamps"),
+     .rebuild = SF_REBUILD_GRAPH},
+    {ROW_LIST("objects", struct sf_scene, objects, object_count, sf_scene_object_group, 0, SF_OBJECTS_MAX,
+              "solid things"),
+     .rebuild = SF_REBUILD_ASSETS},
+    {ROW_OBJECT("medium", medium, medium_group, "the smoke's matter")},
+    {ROW_LIST("ramp", struct sf_scene, ramp, ramp_count, ramp_group, 0, SF_RAMP_MAX, "colour over a particle's life")},
+    {ROW_LIST("emitters", struct sf_scene, emitters, emitter_count, sf_scene_emitter_group, 0, SF_EMITTERS_MAX,
+              "where smoke comes from"),
+     .rebuild = SF_REBUILD_SIM},
+    {ROW_LIST("forces", struct sf_scene, forces, force_count, sf_scene_force_group, 0, SF_FORCES_MAX,
+              "what moves the smoke"),
+     .rebuild = SF_REBUILD_SIM},
+    {ROW_OBJECT("environment", environment, environment_group, "light from all around")},
+    {ROW_ENUM("method", struct sf_scene, method, methods, SF_METHOD_THICK, "how the smoke is drawn"),
+     .rebuild = SF_REBUILD_GRAPH},
+    {ROW_OBJECT("sim", sim, sim_group, "the simulation")},
+    {ROW_OBJECT("output", output, output_group, "pictures for the eye")},
+    {ROW_OBJECT("shadow", shadow, shadow_group, "shadows of objects")},
+    {ROW_OBJECT("thick", thick, thick_group, "the method thick")},
+};
+const struct sf_param_group sf_scene_group = GROUP("scene", struct sf_scene, scene_rows, "The outermost object of a scene file.");
