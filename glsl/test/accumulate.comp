@@ -1,0 +1,13 @@
+#version 460
+// result[i] += source[i]: reads and writes its target
+layout(local_size_x = 64) in;
+layout(set = 0, binding = 0, std430) readonly buffer Source { uint source[]; };
+layout(set = 0, binding = 1, std430) buffer Result { uint result[]; };
+
+void main()
+{
+    uint i = gl_GlobalInvocationID.x;
+
+    if (i < result.length())
+        result[i] += source[i];
+}
