@@ -1,0 +1,28 @@
+// Shadows of the scene's finite objects, by exponential shadow map (Annen et al. 2008). Include it where `sampler2D shadow_map` and, for
+// scene_visibility, `frame` are declared.
+//
+// A cell holds the blurred exp(c (d - 1/2)) of the depth d, 0..1, of the first surface. The point at depth e is lit by the share
+// exp(c (d - 1/2)) exp(c (1/2 - e)), at most 1. Points outside of the cell are lit.
+#ifndef SF_LIB_SHADOW_GLSL
+#define SF_LIB_SHADOW_GLSL
+
+// 0: in shadow .. 1: lit. `at`: the point by the light's world_to_map; `cell` of `cells`.
+float shadow_share(vec4 at, float exponent, float cell, float cells)
+{
+    vec2 uv = at.xy / at.w;
+    vec2 inner = clamp(uv, 0.0, 0.9999);
+    vec2 texel = vec2(inner.x + cell, inner.y) * vec2(1.0 / cells, 1.0) * vec2(512.0);
+    float first = texelFetch(shadow_map, ivec2(texel), 0).r;
+    float lit = min(first * exp(exponent * (0.5 - clamp(at.z, 0.0, 1.0))), 1.0);
+    return at.w > 0.0 && uv == inner ? lit : 1.0;
+}
+
+// The same for a point of the world; 1 for a light that has no map.
+float scene_visibility(uint light, vec3 world)
+{
+    vec4 info = frame.lights[light].shadow;
+    float lit = shadow_share(frame.lights[light].world_to_map * vec4(world, 1.0), info.y, info.z, info.w);
+    return info.x > 0.0 ? lit : 1.0;
+}
+
+#endif
