@@ -1,0 +1,127 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Composite (L pass 10): the interval near..far of each smoke pixel is marched; at each sample the light-view interval gives the optical depth
+// to the light. One group a tile, one thread a pixel.
+//
+// The optical depth of the pixel is spread evenly over the interval. Samples stand at equal shares of the light that reaches the eye:
+// with T = exp(-tau s) over s in 0..1, s_i = -ln(1 - u_i (1 - exp(-tau))) / tau, so that L = (1 - exp(-tau)) mean_i S(s_i).
+#include "shared/frame.h"
+#include "shared/thick.h"
+
+layout(constant_id = 0) const uint STEPS = 8u;
+layout(constant_id = 1) const uint LIGHTS = 1u;
+layout(constant_id = 2) const uint SCENE_SHADOW = 0u;
+layout(constant_id = 3) const uint OCTAVES = 1u;
+layout(local_size_x = SF_THICK_TILE, local_size_y = SF_THICK_TILE) in;
+layout(set = 0, binding = 0, std140) uniform Frame { sf_gpu_frame frame; };
+layout(set = 0, binding = 1, std430) readonly buffer Tiles { uint tiles[]; };
+layout(set = 0, binding = 2, std430) readonly buffer Args { sf_thick_args args; };
+layout(set = 0, binding = 3, std430) readonly buffer Views { sf_gpu_light_view views[]; };
+layout(set = 0, binding = 4) uniform sampler2D raw;
+layout(set = 0, binding = 5) uniform sampler2D blurred;
+layout(set = 0, binding = 6) uniform sampler2D light_map;
+layout(set = 0, binding = 7) uniform sampler2D shadow_map;
+layout(set = 0, binding = 8) uniform sampler2D scene_depth;
+layout(set = 0, binding = 9, rgba16f) writeonly uniform image2D target;
+layout(push_constant) uniform Push { sf_thick_push push; };
+#include "thick/view.glsl"
+#include "lib/smoke_shadow.glsl"
+#include "lib/lighting.glsl"
+#include "lib/environment.glsl"
+#include "lib/phase.glsl"
+#include "lib/shadow.glsl"
+
+// Octaves of multiple scattering (after Wrenninge 2013): each reaches twice as deep, is 0.8 times as strong and half as directed as the one before.
+// The first is single scattering. Values of the phase function, times the octave's strength.
+vec4 octave_phases(float cosine)
+{
+    float g = frame.albedo.w;
+    vec4 phases = vec4(phase_henyey_greenstein(cosine, g), 0.0, 0.0, 0.0);
+    if (OCTAVES > 1u)
+        phases.y = 0.8 * phase_henyey_greenstein(cosine, 0.5 * g);
+    if (OCTAVES > 2u)
+        phases.z = 0.64 * phase_henyey_greenstein(cosine, 0.25 * g);
+    if (OCTAVES > 3u)
+        phases.w = 0.512 * phase_henyey_greenstein(cosine, 0.125 * g);
+    return phases;
+}
+
+// exp(-depth), exp(-depth / 2), exp(-depth / 4), exp(-depth / 8), as far as there are octaves.
+vec4 octave_transmittances(float depth)
+{
+    const uint last = OCTAVES - 1u;
+    float deepest = exp(-depth / float(1u << last));
+    vec4 t = vec4(deepest);
+    if (OCTAVES > 3u)
+        t.z = t.w * t.w;
+    if (OCTAVES > 2u)
+        t.y = t.z * t.z;
+    if (OCTAVES > 1u)
+        t.x = t.y * t.y;
+    return t;
+}
+
+// What one light adds along near..far (world points), before albedo: the mean of p E T over `steps` samples.
+vec3 scattered_from(uint index, vec3 near, vec3 far, vec3 direction, float tau, float opaque, uint steps)
+{
+    sf_gpu_light light = frame.lights[index];
+    sf_gpu_light_view view = views[index];
+    vec3 to_light;
+    vec3 irradiance = light_irradiance(light, near, to_light);
+    bool directional = uint(light.position.w) == SF_LIGHT_KIND_DIRECTIONAL;
+    vec4 phases = octave_phases(dot(direction, to_light)); // of the ways of travel, -to_light in and -direction out
+    vec3 q_near = (view.view * vec4(near, 1.0)).xyz, q_far = (view.view * vec4(far, 1.0)).xyz;
+    bool perspective = view.info.x > 0.5;
+    float size = float(push.cell_size);
+    float left = float(index) * size;
+    vec3 sum = vec3(0.0);
+    // A pixel without smoke takes no step; a loop is left when no lane is in it, where an `if` is not.
+    for (uint i = 0u; i < steps; i++) {
+        float u = (float(i) + 0.5) / float(STEPS);
+        float s = opaque > 1e-4 ? -log(1.0 - u * opaque) / tau : u;
+        vec3 world = mix(near, far, s);
+        if (!directional) {
+            irradiance = light_irradiance(light, world, to_light);
+            phases = octave_phases(dot(direction, to_light));
+        }
+        vec3 at = light_map_of(perspective, mix(q_near, q_far, s), view.window);
+        vec2 inside = clamp(at.xy, 0.0, 0.99999);
+        vec4 texel = texelFetch(light_map, ivec2(inside * size + vec2(left, 0.0)), 0);
+        float depth = inside == at.xy ? light_map_depth(texel, at.z) : 0.0;
+        float lit = dot(phases, octave_transmittances(depth));
+        if (SCENE_SHADOW != 0u)
+            lit *= scene_visibility(index, world);
+        sum += lit * irradiance;
+    }
+    return sum / float(STEPS);
+}
+
+void main()
+{
+    uint tile = tiles[gl_WorkGroupID.x];
+    uvec2 place = uvec2(tile % push.tiles_x, tile / push.tiles_x) * SF_THICK_TILE + gl_LocalInvocationID.xy;
+    ivec2 pixel = ivec2(place);
+    if (place.x >= push.width || place.y >= push.height)
+        return;
+    vec4 sharp = texelFetch(raw, pixel, 0);
+    vec4 soft = texelFetch(blurred, pixel, 0);
+    float tau = mix(sharp.a, soft.a, push.density_blur);
+    vec3 ray = world_ray(smoke_ndc(vec2(pixel)));
+    float near = max(soft.r, frame.eye.w);
+    float far = max(soft.g, near);
+    if (push.soft > 0.0)
+        tau *= clamp((texelFetch(scene_depth, pixel, 0).r - near) / push.soft, 0.0, 1.0);
+    float opaque = 1.0 - exp(-tau);
+
+    uint steps = tau > 0.0 && near < SF_DEPTH_FAR ? STEPS : 0u;
+    vec3 direction = normalize(ray);
+    vec3 scattered = vec3(0.0);
+    for (uint i = 0u; i < LIGHTS; i++)
+        scattered += scattered_from(i, frame.eye.xyz + near * ray, frame.eye.xyz + far * ray, direction, tau, opaque, steps);
+
+    vec3 tint = frame.ramp[clamp(int((1.0 - soft.b) * float(SF_FRAME_RAMP - 1) + 0.5), 0, SF_FRAME_RAMP - 1)].rgb;
+    vec3 outward = frame.eye.xyz + near * ray - args.centre.xyz; // L 3.3.5
+    vec3 ambient = environment_blurred(outward / max(length(outward), 1e-6)) * push.ambient;
+    vec3 radiance = opaque * (frame.albedo.rgb * tint * (scattered + ambient) + frame.emission.rgb);
+    imageStore(target, pixel, steps > 0u ? vec4(radiance, opaque) : vec4(0.0));
+}

@@ -1,0 +1,52 @@
+/* What a rendering method is: a row of the table. It adds its passes to the frame's graph; adding a method touches
+ * nothing else. */
+#ifndef SF_METHODS_METHOD_H
+#define SF_METHODS_METHOD_H
+
+#include "gpu/gpu.h"
+#include "scene/scene.h"
+
+/* What the frame gives a method, and what the method gives back. Resources are of the frame's graph. */
+struct sf_method_frame {
+    struct sf_graph *graph;
+    const struct sf_scene *scene;
+    const struct sf_gpu_tuning *tuning;
+    uint32_t width, height; /* of the frame */
+    sf_resource frame;      /* uniform: struct sf_gpu_frame */
+    sf_resource particles;  /* storage: struct sf_particle[] */
+    sf_resource counts;     /* storage, indirect: struct sf_particle_counts */
+    sf_resource color; /* RGBA16F frame: the shaded scene, premultiplied; alpha is 1 on surfaces and visible background,
+                          0 on nothing */
+    sf_resource depth; /* R32F frame: linear view depth of the scene, SF_DEPTH_FAR where there is none */
+    sf_resource shadow_map; /* exponential shadow maps of the lights, one cell a light */
+    /* Set by `light`: what the scene's shading reads for the smoke's shadow on it. 0: none. */
+    sf_resource smoke_map;   /* RGBA32F, cells side by side, one a light: R near, G far, B coverage, A optical depth */
+    sf_resource smoke_views; /* storage: struct sf_gpu_light_view[light_count] */
+    /* Set by `view` when asked for: planes at the frame's size; 0 when the method has none. */
+    bool want_aovs;
+    sf_resource aov_radiance; /* RGBA16F: premultiplied smoke alone, A: alpha */
+    sf_resource aov_depths;   /* RGBA32F: near, far (m of view depth), optical depth, transmittance */
+};
+
+struct sf_method_row {
+    const char *name; /* "thick" */
+    const char *doc;
+    /* Passes before the scene is shaded (what lights see), and after (what the camera sees, composited over `color`).
+     * `state` is the method's own memory for push constants, alive as long as the graph. */
+    enum sf_status (*light)(struct sf_method_frame *frame, void *state, const struct sf_log *log);
+    enum sf_status (*view)(struct sf_method_frame *frame, void *state, const struct sf_log *log);
+    /* Renews push constants from the scene's settings before each play. */
+    void (*update)(const struct sf_method_frame *frame, void *state);
+    size_t state_bytes;
+    /* Device objects that outlive a graph (atlas textures): NULL when there are none. */
+    enum sf_status (*create_assets)(struct sf_gpu *gpu, const struct sf_scene *scene, const struct sf_log *log,
+                                    void **assets);
+    void (*destroy_assets)(void **assets);
+    void (*bind_assets)(const struct sf_graph *graph, struct sf_player *player, void *assets);
+};
+
+/* Indexed by enum sf_method. */
+extern const struct sf_method_row sf_methods[];
+extern const uint32_t sf_method_count;
+
+#endif
