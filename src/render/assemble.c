@@ -1,0 +1,397 @@
+#include "render/assemble.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include "shared/particle.h"
+
+_Static_assert(sizeof(struct sf_particle) == 64, "std430");
+_Static_assert(sizeof(struct sf_particle_counts) == 96, "std430");
+_Static_assert(sizeof(struct sf_gpu_light_view) == 96, "std140");
+
+/* Resources that only this file needs. */
+struct parts {
+    struct sf_assembly *assembly;
+    sf_resource z;
+    uint32_t constants[SF_PASS_CONSTANTS_MAX], constant_count;
+};
+
+bool sf_scene_shows_picture(const struct sf_scene *scene)
+{
+    return scene->environment.visible && scene->environment.pixels;
+}
+
+static sf_resource import_image(struct sf_graph *graph, const char *name, enum sf_format format, uint32_t width, uint32_t height)
+{
+    return sf_graph_image(graph, &(struct sf_image_desc){.name = name,
+                                                         .format = format,
+                                                         .lifetime = SF_IMPORTED,
+                                                         .size = {.width = width, .height = height},
+                                                         .outside = SF_ACCESS_SAMPLED});
+}
+
+static sf_resource import_buffer(struct sf_graph *graph, const char *name, uint64_t bytes, bool history)
+{
+    return sf_graph_buffer(graph, &(struct sf_buffer_desc){.name = name,
+                                                           .lifetime = SF_IMPORTED,
+                                                           .bytes = bytes,
+                                                           .outside = SF_ACCESS_STORAGE_READ,
+                                                           .history = history});
+}
+
+static sf_resource upload(struct sf_graph *graph, const char *name, uint64_t bytes)
+{
+    return sf_graph_buffer(graph, &(struct sf_buffer_desc){.name = name, .lifetime = SF_UPLOAD, .bytes = bytes});
+}
+
+static sf_resource frame_image(const struct sf_assembly *assembly, const char *name, enum sf_format format)
+{
+    return sf_graph_image(assembly->graph,
+                          &(struct sf_image_desc){.name = name,
+                                                  .format = format,
+                                                  .lifetime = SF_TRANSIENT,
+                                                  .size = {.width = assembly->width, .height = assembly->height}});
+}
+
+/* One texel that stands in where the shader has a sampler and the scene nothing to sample. */
+static sf_resource blank(struct sf_assembly *assembly)
+{
+    if (!assembly->blank)
+        assembly->blank = import_image(assembly->graph, "blank", SF_FORMAT_RGBA16F, 1, 1);
+    return assembly->blank;
+}
+
+static void declare_inputs(struct sf_assembly *assembly, const struct sf_assembly_options *options)
+{
+    struct sf_graph *graph = assembly->graph;
+    struct sf_method_frame *method = &assembly->method;
+    const struct sf_environment *environment = &assembly->scene->environment;
+    const struct sf_shadow_cells *shadow = &assembly->shadow;
+
+    method->frame = upload(graph, "frame", sizeof(struct sf_gpu_frame));
+    assembly->objects_upload = upload(graph, "objects", sizeof(struct sf_gpu_object) * SF_FRAME_OBJECTS);
+    method->particles = import_buffer(graph, "particles", options->capacity * sizeof(struct sf_particle), true);
+    method->counts = import_buffer(graph, "counts", sizeof(struct sf_particle_counts), false);
+    if (shadow->count > 0)
+        method->shadow_map = import_image(graph, "shadow.map", SF_FORMAT_R32F, shadow->size * shadow->count, shadow->size);
+    else
+        method->shadow_map = blank(assembly);
+    if (sf_scene_shows_picture(assembly->scene))
+        assembly->environment =
+            import_image(graph, "environment", SF_FORMAT_RGBA16F, environment->width, environment->height);
+    if (assembly->list.meshes > 0) {
+        assembly->vertices = import_buffer(graph, "mesh.vertices", assembly->meshes.vertex_bytes, false);
+        assembly->indices = import_buffer(graph, "mesh.indices", assembly->meshes.index_bytes, false);
+    }
+}
+
+/* As glsl/scene/shade.glsl numbers them. */
+static void find_constants(struct parts *parts)
+{
+    const struct sf_assembly *assembly = parts->assembly;
+    const struct sf_scene *scene = assembly->scene;
+    const struct sf_environment *environment = &scene->environment;
+    uint32_t kinds = 0, casts = 0, checkered = 0;
+
+    for (uint32_t i = 0; i < scene->light_count; i++) {
+        kinds |= (uint32_t)scene->lights[i].kind << 2 * i;
+        casts |= (uint32_t)scene->lights[i].shadows << i;
+    }
+    for (uint32_t i = 0; i < scene->object_count; i++)
+        checkered |= scene->objects[i].kind == SF_OBJECT_PLANE && scene->objects[i].checker > 0;
+    uint32_t shown = !environment->visible ? 3 : sf_scene_shows_picture(scene) ? 2 : environment->kind == SF_ENVIRONMENT_SKY ? 0 : 1;
+    uint32_t level = !environment->pixels; /* sky and colour are the same all around */
+    const uint32_t constants[] = {assembly->list.planes,
+                                  scene->light_count,
+                                  kinds,
+                                  sf_shadow_mask(&assembly->shadow),
+                                  assembly->method.smoke_map ? casts : 0,
+                                  checkered,
+                                  shown,
+                                  level};
+    memcpy(parts->constants, constants, sizeof constants);
+    parts->constant_count = sizeof constants / sizeof constants[0];
+}
+
+enum { SHADE_USES = 6 };
+
+/* Bindings 0-4 of glsl/scene/shade.glsl; the number of uses. */
+static uint32_t shade_uses(struct parts *parts, struct sf_use uses[SHADE_USES])
+{
+    struct sf_assembly *assembly = parts->assembly;
+    const struct sf_method_frame *method = &assembly->method;
+    bool smoke = parts->constants[4] != 0;
+    const struct sf_use all[SHADE_USES - 1] = {
+        {.resource = method->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
+        {.resource = assembly->objects_upload, .access = SF_ACCESS_UNIFORM, .binding = 1},
+        {.resource = method->shadow_map, .access = SF_ACCESS_SAMPLED, .binding = 2},
+        {.resource = smoke ? method->smoke_map : blank(assembly), .access = SF_ACCESS_SAMPLED, .binding = 3},
+        {.resource = smoke ? method->smoke_views : assembly->objects_upload, .access = SF_ACCESS_UNIFORM, .binding = 4},
+    };
+
+    memcpy(uses, all, sizeof all);
+    return SHADE_USES - 1;
+}
+
+/* The picture, the linear depth, and (for finite objects) the reversed z. */
+static uint32_t target_uses(const struct parts *parts, enum sf_load load, bool with_z, enum sf_load z_load, struct sf_use uses[3])
+{
+    const struct sf_method_frame *method = &parts->assembly->method;
+
+    uses[0] = (struct sf_use){.resource = method->color, .access = SF_ACCESS_COLOR, .binding = 0, .load = load};
+    uses[1] = (struct sf_use){.resource = method->depth, .access = SF_ACCESS_COLOR, .binding = 1, .load = load};
+    uses[2] = (struct sf_use){.resource = parts->z, .access = SF_ACCESS_DEPTH, .load = z_load};
+    return with_z ? 3 : 2;
+}
+
+static void declare_sky(struct parts *parts)
+{
+    struct sf_assembly *assembly = parts->assembly;
+    struct sf_use uses[SHADE_USES + 3];
+    uint32_t count = shade_uses(parts, uses);
+
+    uses[count++] = (struct sf_use){.resource = assembly->environment ? assembly->environment : blank(assembly),
+                                    .access = SF_ACCESS_SAMPLED,
+                                    .binding = 5,
+                                    .sampler = assembly->environment ? SF_SAMPLER_LINEAR_REPEAT : SF_SAMPLER_NEAREST};
+    count += target_uses(parts, SF_LOAD_DISCARD, false, SF_LOAD_KEEP, &uses[count]);
+    struct sf_pass_desc pass = {.name = "scene.sky",
+                                .kind = SF_PASS_RASTER,
+                                .shader = "scene/sky.vert",
+                                .fragment = "scene/sky.frag",
+                                .uses = uses,
+                                .use_count = count,
+                                .constant_count = parts->constant_count,
+                                .vertices = 4,
+                                .instances = 1,
+                                .raster = {.triangle_strip = true}};
+    memcpy(pass.constants, parts->constants, sizeof pass.constants);
+    sf_graph_pass(assembly->graph, &pass);
+}
+
+static void declare_planes(struct parts *parts)
+{
+    struct sf_use uses[SHADE_USES + 3];
+    uint32_t count = shade_uses(parts, uses);
+
+    count += target_uses(parts, SF_LOAD_KEEP, false, SF_LOAD_KEEP, &uses[count]);
+    struct sf_pass_desc pass = {.name = "scene.planes",
+                                .kind = SF_PASS_RASTER,
+                                .shader = "scene/planes.vert",
+                                .fragment = "scene/planes.frag",
+                                .uses = uses,
+                                .use_count = count,
+                                .constant_count = parts->constant_count,
+                                .vertices = 4,
+                                .instances = parts->assembly->list.planes,
+                                .raster = {.triangle_strip = true}};
+    memcpy(pass.constants, parts->constants, sizeof pass.constants);
+    sf_graph_pass(parts->assembly->graph, &pass);
+}
+
+static void declare_solids(struct parts *parts)
+{
+    struct sf_use uses[SHADE_USES + 3];
+    uint32_t count = shade_uses(parts, uses);
+
+    count += target_uses(parts, SF_LOAD_KEEP, true, SF_LOAD_CLEAR, &uses[count]);
+    struct sf_pass_desc pass = {.name = "scene.solids",
+                                .kind = SF_PASS_RASTER,
+                                .shader = "scene/solids.vert",
+                                .fragment = "scene/solids.frag",
+                                .uses = uses,
+                                .use_count = count,
+                                .constant_count = parts->constant_count,
+                                .vertices = 36,
+                                .instances = parts->assembly->list.solids,
+                                .raster = {.cull = SF_CULL_FRONT, .depth = SF_DEPTH_GREATER_EQUAL}};
+    memcpy(pass.constants, parts->constants, sizeof pass.constants);
+    sf_graph_pass(parts->assembly->graph, &pass);
+}
+
+static void declare_mesh(struct parts *parts, uint32_t number)
+{
+    struct sf_assembly *assembly = parts->assembly;
+    uint32_t object = assembly->list.planes + assembly->list.solids + number;
+    uint32_t mesh = assembly->scene->objects[assembly->list.from[object]].mesh;
+    struct sf_mesh_push *push = &assembly->mesh_push[number];
+    struct sf_use uses[SHADE_USES + 5];
+    uint32_t count = shade_uses(parts, uses);
+    char name[32] = "scene.mesh00";
+
+    *push = (struct sf_mesh_push){.object = object,
+                                  .first_index = assembly->meshes.first_index[mesh],
+                                  .first_vertex = assembly->meshes.first_vertex[mesh]};
+    name[10] = (char)('0' + number / 10);
+    name[11] = (char)('0' + number % 10);
+    uses[count++] = (struct sf_use){.resource = assembly->vertices, .access = SF_ACCESS_STORAGE_READ, .binding = 5};
+    uses[count++] = (struct sf_use){.resource = assembly->indices, .access = SF_ACCESS_STORAGE_READ, .binding = 6};
+    bool first = number == 0 && assembly->list.solids == 0;
+    count += target_uses(parts, SF_LOAD_KEEP, true, first ? SF_LOAD_CLEAR : SF_LOAD_KEEP, &uses[count]);
+    struct sf_pass_desc pass = {.name = name,
+                                .kind = SF_PASS_RASTER,
+                                .shader = "scene/mesh.vert",
+                                .fragment = "scene/mesh.frag",
+                                .uses = uses,
+                                .use_count = count,
+                                .constant_count = parts->constant_count,
+                                .push = push,
+                                .push_bytes = sizeof *push,
+                                .vertices = assembly->scene->meshes[mesh].index_count,
+                                .instances = 1,
+                                .raster = {.depth = SF_DEPTH_GREATER_EQUAL}};
+    memcpy(pass.constants, parts->constants, sizeof pass.constants);
+    sf_graph_pass(assembly->graph, &pass);
+}
+
+static void declare_scene(struct sf_assembly *assembly)
+{
+    struct parts parts = {.assembly = assembly};
+
+    assembly->method.color =
+        frame_image(assembly, "color", assembly->float_color ? SF_FORMAT_RGBA32F : SF_FORMAT_RGBA16F);
+    assembly->method.depth = frame_image(assembly, "depth", SF_FORMAT_R32F);
+    find_constants(&parts);
+    declare_sky(&parts);
+    if (assembly->list.planes > 0)
+        declare_planes(&parts);
+    if (assembly->list.solids + assembly->list.meshes > 0)
+        parts.z = frame_image(assembly, "z", SF_FORMAT_D32F);
+    if (assembly->list.solids > 0)
+        declare_solids(&parts);
+    for (uint32_t i = 0; i < assembly->list.meshes; i++)
+        declare_mesh(&parts, i);
+}
+
+static sf_resource declare_readback(struct sf_assembly *assembly, const char *name, const char *pass, sf_resource from,
+                                    uint64_t bytes)
+{
+    sf_resource to =
+        sf_graph_buffer(assembly->graph, &(struct sf_buffer_desc){.name = name, .lifetime = SF_READBACK, .bytes = bytes});
+    const struct sf_use uses[] = {{.resource = from, .access = SF_ACCESS_TRANSFER_READ},
+                                  {.resource = to, .access = SF_ACCESS_TRANSFER_WRITE}};
+
+    sf_graph_pass(assembly->graph, &(struct sf_pass_desc){.name = pass,
+                                                          .kind = SF_PASS_TRANSFER,
+                                                          .uses = uses,
+                                                          .use_count = 2,
+                                                          .transfer = SF_TRANSFER_COPY});
+    return to;
+}
+
+static void declare_outputs(struct sf_assembly *assembly, const struct sf_assembly_options *options)
+{
+    const struct sf_method_frame *method = &assembly->method;
+    uint64_t pixels = (uint64_t)assembly->width * assembly->height;
+
+    if (options->no_readback) {
+        sf_graph_output(assembly->graph, method->color);
+        sf_graph_output(assembly->graph, method->depth);
+        return;
+    }
+    assembly->read_color = declare_readback(assembly, "read.color", "output.color", method->color,
+                                            pixels * (assembly->float_color ? 16 : 8));
+    assembly->read_depth = declare_readback(assembly, "read.depth", "output.depth", method->depth, pixels * 4);
+    assembly->read_counts =
+        declare_readback(assembly, "read.counts", "output.counts", method->counts, sizeof(struct sf_particle_counts));
+    if (options->aovs & SF_AOV_SMOKE && method->aov_radiance)
+        assembly->read_smoke = declare_readback(assembly, "read.smoke", "output.smoke", method->aov_radiance, pixels * 8);
+    if (options->aovs & SF_AOV_DEPTHS && method->aov_depths)
+        assembly->read_depths =
+            declare_readback(assembly, "read.smoke_depths", "output.smoke_depths", method->aov_depths, pixels * 16);
+}
+
+/* Where each mesh will stand in the buffers that all of them share. */
+static void place_meshes(struct sf_assembly *assembly)
+{
+    struct sf_mesh_buffers *buffers = &assembly->meshes;
+    uint32_t vertices = 0, indices = 0;
+
+    for (uint32_t i = 0; i < assembly->scene->mesh_count; i++) {
+        buffers->first_vertex[i] = vertices;
+        buffers->first_index[i] = indices;
+        vertices += assembly->scene->meshes[i].vertex_count;
+        indices += assembly->scene->meshes[i].index_count;
+    }
+    buffers->vertex_bytes = (uint64_t)vertices * 6 * sizeof(float);
+    buffers->index_bytes = (uint64_t)indices * sizeof(uint32_t);
+}
+
+static enum sf_status declare(struct sf_assembly *assembly, const struct sf_assembly_options *options, const struct sf_log *log)
+{
+    const struct sf_method_row *row = &sf_methods[assembly->scene->method];
+    enum sf_status status = sf_graph_create("frame", log, &assembly->graph);
+
+    if (status)
+        return status;
+    assembly->method.graph = assembly->graph;
+    declare_inputs(assembly, options);
+    if (row->light)
+        status = row->light(&assembly->method, assembly->state, log);
+    if (status)
+        return status;
+    declare_scene(assembly);
+    if (row->view)
+        status = row->view(&assembly->method, assembly->state, log);
+    if (!status)
+        declare_outputs(assembly, options);
+    return status;
+}
+
+enum sf_status sf_assembly_create(const struct sf_scene *scene, const struct sf_assembly_options *options,
+                                  const struct sf_gpu_tuning *tuning, const struct sf_plan_memory *memory, const struct sf_log *log,
+                                  struct sf_assembly **out)
+{
+    const struct sf_method_row *row = &sf_methods[scene->method];
+    struct sf_assembly *assembly = calloc(1, sizeof *assembly);
+    void *state = calloc(1, row->state_bytes > 0 ? row->state_bytes : 1);
+    enum sf_status status = SF_OK;
+
+    *out = NULL;
+    if (!assembly || !state) {
+        free(assembly);
+        free(state);
+        return sf_fail(log, SF_ERROR_MEMORY, "the frame's graph: out of memory");
+    }
+    assembly->state = state;
+    assembly->scene = scene;
+    assembly->width = options->width;
+    assembly->height = options->height;
+    assembly->float_color = options->float_color;
+    assembly->method = (struct sf_method_frame){
+        .scene = scene, .tuning = tuning, .width = options->width, .height = options->height, .want_aovs = options->aovs != 0};
+    sf_object_list_fill(scene, &assembly->list);
+    for (uint32_t i = 0; i < scene->object_count; i++)
+        sf_object_fill(&scene->objects[assembly->list.from[i]], &assembly->objects[i]);
+    sf_shadow_fit(scene, &assembly->shadow);
+    place_meshes(assembly);
+    status = declare(assembly, options, log);
+    if (!status)
+        status = sf_plan_create(assembly->graph, memory, log, &assembly->plan);
+    if (status)
+        sf_assembly_destroy(&assembly);
+    *out = assembly;
+    return status;
+}
+
+void sf_assembly_destroy(struct sf_assembly **assembly)
+{
+    if (!assembly || !*assembly)
+        return;
+    sf_plan_destroy(&(*assembly)->plan);
+    sf_graph_destroy(&(*assembly)->graph);
+    free((*assembly)->state);
+    free(*assembly);
+    *assembly = NULL;
+}
+
+struct sf_shadow_scene sf_assembly_shadow(const struct sf_assembly *assembly)
+{
+    return (struct sf_shadow_scene){.scene = assembly->scene,
+                                    .cells = &assembly->shadow,
+                                    .objects = assembly->objects,
+                                    .from = assembly->list.from,
+                                    .planes = assembly->list.planes,
+                                    .solids = assembly->list.solids,
+                                    .meshes = assembly->list.meshes,
+                                    .buffers = &assembly->meshes};
+}
