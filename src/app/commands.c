@@ -1,0 +1,120 @@
+#include "commands.h"
+
+#include "bench.h"
+#include "capture.h"
+
+#define FIELD(f) offsetof(struct sf_arguments, f)
+
+/* The sides of pictures that some Vulkan device can draw; the device at hand may say less. */
+enum { SIDE_MAX = 32768 };
+
+static const char *const types[] = {"half", "float", NULL};
+static const char *const compressions[] = {"none", "rle", "zips", "zip", "piz", "pxr24", "b44", NULL};
+static const char *const tones[] = {"linear", "reinhard", "aces", "neutral", NULL};
+static const char *const graph_formats[] = {"text", "dot", "json", NULL};
+static const char *const params_formats[] = {"text", "json-schema", "markdown", NULL};
+
+static const struct sf_option common_options[] = {
+    {"verbose", 'v', SF_OPTION_COUNT, FIELD(verbose), .doc = "say more; twice: say everything"},
+    {"quiet", 'q', SF_OPTION_FLAG, FIELD(quiet), .doc = "say nothing but errors"},
+    {"help", 'h', SF_OPTION_FLAG, FIELD(help), .doc = "print this"},
+    {.name = NULL}};
+
+static const struct sf_option scene_options[] = {
+    {"set", 0, SF_OPTION_LIST, FIELD(sets), .value = "GROUP.KEY=VALUE",
+     .doc = "a parameter over the scene's (see sfumato params); repeatable"},
+    {"method", 0, SF_OPTION_TEXT, FIELD(method), .value = "NAME", .doc = "draw by another method than the scene's"},
+    {.name = NULL}};
+
+static const struct sf_option device_options[] = {
+    {"device", 0, SF_OPTION_TEXT, FIELD(device), .value = "DEVICE",
+     .doc = "index, UUID or part of the name (see sfumato devices)"},
+    {"validate", 0, SF_OPTION_FLAG, FIELD(validate), .doc = "Vulkan's validation layers; a message is an error"},
+    {"memory", 0, SF_OPTION_NUMBER, FIELD(memory), .value = "MIB",
+     .doc = "device memory that may be used (default: most of it)", .min = 1, .max = 1 << 24},
+    {"no-cache", 0, SF_OPTION_FLAG, FIELD(no_cache), .doc = "leave the pipeline cache on disk alone"},
+    {.name = NULL}};
+
+static const struct sf_option size_options[] = {
+    {"size", 's', SF_OPTION_SIZE, FIELD(size), .value = "WxH", .initial = "800x800", .doc = "pixels of the picture",
+     .min = 1, .max = SIDE_MAX},
+    {"aovs", 0, SF_OPTION_FLAG, FIELD(aovs), .doc = "also the smoke alone: light, near, far, depth, transmittance"},
+    {.name = NULL}};
+
+static const struct sf_option capture_options[] = {
+    {"output", 'o', SF_OPTION_LIST, FIELD(outputs), .value = "PATTERN",
+     .doc = "files, .exr or .png, #### or %04d the frame; repeatable"},
+    {"frames", 'f', SF_OPTION_TEXT, FIELD(frames), .value = "LIST", .initial = "0",
+     .doc = "frame numbers, such as 1-100x2,150"},
+    {"type", 0, SF_OPTION_WORD, FIELD(type), .value = "TYPE", .initial = "half", .doc = "numbers in EXR files",
+     .words = types},
+    {"compression", 0, SF_OPTION_WORD, FIELD(compression), .value = "NAME", .initial = "zips", .doc = "of EXR files",
+     .words = compressions},
+    {"tone", 0, SF_OPTION_WORD, FIELD(tone), .value = "NAME", .doc = "mapping for PNG files, not the scene's",
+     .words = tones},
+    {"exposure", 0, SF_OPTION_REAL, FIELD(exposure), .value = "STOPS", .doc = "for PNG files, not the scene's",
+     .min = -32, .max = 32},
+    {"overwrite", 0, SF_OPTION_FLAG, FIELD(overwrite), .doc = "replace files that exist"},
+    {"skip-existing", 0, SF_OPTION_FLAG, FIELD(skip_existing), .doc = "leave files that exist, and render the others"},
+    {"threads", 0, SF_OPTION_NUMBER, FIELD(threads), .value = "N",
+     .doc = "that write files (default: one a core, at most 4)", .min = 1, .max = 64},
+    {.name = NULL}};
+
+static const struct sf_option bench_options[] = {
+    {"frames", 'f', SF_OPTION_TEXT, FIELD(frames), .value = "LIST", .initial = "96-127",
+     .doc = "frames that are timed"},
+    {"warmup", 0, SF_OPTION_NUMBER, FIELD(warmup), .value = "N", .initial = "8",
+     .doc = "frames before them that are not", .min = 0, .max = 100000},
+    {"repeats", 0, SF_OPTION_NUMBER, FIELD(repeats), .value = "N", .initial = "3", .doc = "how often", .min = 1,
+     .max = 100000},
+    {"json", 0, SF_OPTION_TEXT, FIELD(json_file), .value = "FILE", .doc = "write a report (- is standard output)"},
+    {"csv", 0, SF_OPTION_TEXT, FIELD(csv_file), .value = "FILE", .doc = "write the passes as a table"},
+    {"trace", 0, SF_OPTION_TEXT, FIELD(trace_file), .value = "FILE", .doc = "write every pass for chrome://tracing"},
+    {"compare", 0, SF_OPTION_TEXT, FIELD(compare_file), .value = "FILE",
+     .doc = "print the ratio to an older --json report"},
+    {"sort", 0, SF_OPTION_FLAG, FIELD(sort), .doc = "time the particles' sort instead; takes no SCENE"},
+    {"sizes", 0, SF_OPTION_TEXT, FIELD(sizes), .value = "LIST", .doc = "pairs to sort, such as 16384,65536"},
+    {.name = NULL}};
+
+static const struct sf_option devices_options[] = {{"json", 0, SF_OPTION_FLAG, FIELD(json), .doc = "as JSON"},
+                                                   {.name = NULL}};
+
+static const struct sf_option graph_options[] = {{"format", 0, SF_OPTION_WORD, FIELD(format), .value = "FORMAT",
+                                                  .initial = "text", .doc = "of the output", .words = graph_formats},
+                                                 {.name = NULL}};
+
+static const struct sf_option params_options[] = {{"format", 0, SF_OPTION_WORD, FIELD(format), .value = "FORMAT",
+                                                   .initial = "text", .doc = "of the output", .words = params_formats},
+                                                  {.name = NULL}};
+
+static const struct sf_option *const capture_tables[] = {capture_options, size_options,   scene_options,
+                                                         device_options,  common_options, NULL};
+static const struct sf_option *const bench_tables[] = {bench_options,  size_options,   scene_options,
+                                                       device_options, common_options, NULL};
+static const struct sf_option *const devices_tables[] = {devices_options, common_options, NULL};
+static const struct sf_option *const graph_tables[] = {graph_options, size_options, scene_options, common_options,
+                                                       NULL};
+static const struct sf_option *const params_tables[] = {params_options, common_options, NULL};
+static const struct sf_option *const check_tables[] = {scene_options, common_options, NULL};
+
+static const char *const capture_notes[] = {
+    "Without -o the files are named after the scene, in the current folder. Ctrl-C finishes the frame in hand.",
+    "  sfumato capture scenes/plume.json -o out/plume.####.exr -o out/plume.####.png --frames 0-95", NULL};
+static const char *const bench_notes[] = {
+    "  sfumato bench scenes/plume.json --set thick.steps=24 --compare before.json", NULL};
+static const char *const graph_notes[] = {"  sfumato graph scenes/plume.json --format dot | dot -Tsvg > graph.svg",
+                                          NULL};
+
+const struct sf_command sf_commands[] = {
+    {"capture", "SCENE", "Renders frames of a scene into EXR and PNG files.", capture_notes, capture_tables, 1, 1,
+     sf_capture_run},
+    {"bench", "SCENE", "Times every pass of a scene's frames on the device.", bench_notes, bench_tables, 0, 1,
+     sf_bench_run},
+    {"devices", "", "Lists the Vulkan devices of this machine.", NULL, devices_tables, 0, 0, sf_devices_run},
+    {"graph", "SCENE", "Prints the compiled render graph of a scene's frame; needs no device.", graph_notes,
+     graph_tables, 1, 1, sf_graph_run},
+    {"params", "", "Prints all parameters: defaults, ranges, units, meanings.", NULL, params_tables, 0, 0,
+     sf_params_run},
+    {"check", "SCENE...", "Checks scene files and says what is wrong with them.", NULL, check_tables, 1, SIZE_MAX,
+     sf_check_run},
+    {.name = NULL}};

@@ -1,0 +1,17 @@
+/* Files that the program itself writes (reports), and what must hold before work begins. */
+#ifndef SF_APP_FILES_H
+#define SF_APP_FILES_H
+
+#include <stddef.h>
+#include "sfumato/status.h"
+
+/* Is there a folder for `path` that can be written into, and is `path` not a folder itself? SF_ERROR_IO, with the
+ * remedy. */
+enum sf_status sf_folder_check(const char *path);
+/* The final name holds all of the text or what it held before. "-" is standard output. */
+enum sf_status sf_report_write(const char *path, const char *text, size_t length);
+/* Flushes standard output and turns a lost write into SF_ERROR_IO; gives `status` back when that is an error already.
+ */
+enum sf_status sf_output_finish(enum sf_status status);
+
+#endif
