@@ -1,0 +1,14 @@
+#!/usr/bin/env bash
+# Nothing unfinished and no file that has outgrown its room.
+set -uo pipefail
+cd "$1"
+status=0
+if grep -rnIwE '(TO''DO|FIX''ME|XX''X)' src glsl tests script docs scenes README.md 2>/dev/null; then
+    echo "words.sh: unfinished words above"; status=1
+fi
+while read -r lines file; do
+    if [ "$file" != total ] && [ "$lines" -gt 600 ]; then
+        echo "words.sh: $file has $lines lines; split it at 600"; status=1
+    fi
+done < <(find src glsl -type f \( -name '*.[ch]' -o -name '*.comp' -o -name '*.vert' -o -name '*.frag' -o -name '*.glsl' \) -exec wc -l {} +)
+exit $status
