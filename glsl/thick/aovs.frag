@@ -8,6 +8,7 @@
 layout(constant_id = 0) const uint MARGIN = 0u; // as in tile.vert
 layout(constant_id = 1) const uint TO_FRAME = 1u;
 layout(constant_id = 2) const uint SCALE = 1u;
+layout(constant_id = 3) const uint CHOICE = 0u; // as in tile.vert
 layout(set = 0, binding = 2) uniform sampler2D smoke;
 layout(set = 0, binding = 3) uniform sampler2D smoke_depth;
 layout(set = 0, binding = 4) uniform sampler2D scene_depth;
@@ -21,8 +22,7 @@ layout(location = 1) out vec4 depths;
 
 void main()
 {
-    upsample_begin(gl_FragCoord.xy);
-    radiance = SCALE == 1u ? texelFetch(smoke, ivec2(gl_FragCoord.xy), 0) : upsample(smoke);
+    radiance = upsample(smoke, gl_FragCoord.xy);
     // Depths are not mixed across the border of the smoke: they come from the nearest pixel.
     ivec2 pixel = min(ivec2(gl_FragCoord.xy) / int(SCALE), textureSize(raw, 0) - 1);
     vec4 sharp = texelFetch(raw, pixel, 0);

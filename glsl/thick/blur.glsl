@@ -50,14 +50,14 @@ void main()
         uint tile = tiles[gl_WorkGroupID.x];
         uvec2 at = uvec2(tile % push.tiles_x, tile / push.tiles_x);
         corner = at * SF_THICK_TILE;
-        if (VERTICAL != 0u) {
-            // The first direction wrote listed tiles only: read no others.
-            uint rows = (push.height + SF_THICK_TILE - 1u) / SF_THICK_TILE;
-            if (at.y == 0u || mask[tile - push.tiles_x] == 0u)
-                low.y = int(corner.y);
-            if (at.y + 1u >= rows || mask[tile + push.tiles_x] == 0u)
-                high.y = min(high.y, int(corner.y + SF_THICK_TILE));
-        }
+        // Only listed tiles hold anything: read no others along the axis.
+        uint step = VERTICAL != 0u ? push.tiles_x : 1u;
+        uint place = VERTICAL != 0u ? at.y : at.x;
+        uint last = (VERTICAL != 0u ? push.height - 1u : push.width - 1u) / SF_THICK_TILE;
+        if (place == 0u || mask[tile - step] == 0u)
+            low = ivec2(corner);
+        if (place == last || mask[tile + step] == 0u)
+            high = min(high, ivec2(corner) + SF_THICK_TILE);
     }
 #else
     if (push.cell != 0u) {

@@ -12,10 +12,9 @@ layout(set = 0, binding = 1, std430) readonly buffer Particles { sf_particle par
 layout(push_constant) uniform Push { sf_thick_push push; };
 #include "thick/view.glsl"
 
-layout(location = 0) out vec4 ray;             // xy: view ray of unit depth; zw: place in the detail atlas
+layout(location = 0) out vec4 ray;             // xy: view ray of unit depth; zw: texel of the detail atlas
 layout(location = 1) flat out vec4 sphere;     // centre (x, y, depth), radius
-layout(location = 2) flat out vec4 properties; // extinction, life, near plane, atlas tile
-layout(location = 3) flat out float firmness;
+layout(location = 2) flat out vec4 properties; // extinction, life, near plane, firmness
 
 void main()
 {
@@ -29,16 +28,17 @@ void main()
     ray.xy = at;
     ray.zw = vec2(0.0);
     if (DETAIL != 0u) {
-        // Turned tile, -1..1 over the sphere's middle plane (L 3.3.6).
+        // Turned tile over the sphere's middle plane (L 3.3.6), in texels of the 2 x 2 atlas.
         vec2 middle = (at * c.z - c.xy) / p.radius * push.detail_scale;
         float s = sin(p.rotation), k = cos(p.rotation);
-        ray.zw = vec2(k * middle.x - s * middle.y, s * middle.x + k * middle.y);
+        uint tile = p.look & 3u;
+        ray.zw = (vec2(k * middle.x - s * middle.y, s * middle.x + k * middle.y) * 0.25 + 0.25 + 0.5 * vec2(tile & 1u, tile >> 1)) * float(SF_THICK_ATLAS);
     }
     sphere = vec4(c, p.radius);
-    properties = vec4(p.extinction, life, frame.eye.w, float(p.look & 3u));
+    properties = vec4(p.extinction, life, frame.eye.w, 1.0);
     if (push.life_fade > 0.0)
         properties.x *= pow(life, push.life_fade);
-    firmness = sphere_firmness(2.0 * p.radius * properties.x, push.thin);
+    properties.w = sphere_firmness(2.0 * p.radius * properties.x, push.thin);
 
     vec2 ndc = at / tangent;
     vec2 share = frame.size.xy / (float(push.scale) * vec2(push.width, push.height)); // of the image that the frame covers

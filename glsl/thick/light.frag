@@ -2,6 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Intersects the imaginary sphere along the light's ray (L 3.3.2, pass 2). Blended MIN on colour, ADD on alpha:
 // R nearest distance, G minus the farthest (so that MIN keeps it), B unused, A optical depth.
+#include "shared/frame.h"
 #include "lib/sphere.glsl"
 
 layout(location = 0) in vec2 window;
@@ -19,9 +20,8 @@ void main()
     float far = chord.x + chord.y;
     if (perspective)
         near = max(near, 0.0);
-    if (chord.y <= 0.0 || far <= near)
-        discard;
     float middle = 0.5 * (near + far);
     float reach = 0.5 * (far - near) * properties.z;
-    result = vec4(middle - reach, -middle - reach, 0.0, properties.x * (far - near));
+    bool hit = chord.y > 0.0 && far > near;
+    result = hit ? vec4(middle - reach, -middle - reach, 1.0, properties.x * (far - near)) : vec4(SF_DEPTH_FAR, SF_DEPTH_FAR, 1.0, 0.0);
 }

@@ -12,11 +12,14 @@ layout(constant_id = 0) const uint STEPS = 8u;
 layout(constant_id = 1) const uint LIGHTS = 1u;
 layout(constant_id = 2) const uint SCENE_SHADOW = 0u;
 layout(constant_id = 3) const uint OCTAVES = 1u;
+layout(constant_id = 4) const uint POSITIONAL = 0u; // 1: some light stands somewhere, so that its way and strength change along the ray
+layout(constant_id = 5) const uint SOFT = 0u; // 1: fade towards the scene beyond the exact cut
 layout(local_size_x = SF_THICK_TILE, local_size_y = SF_THICK_TILE) in;
 layout(set = 0, binding = 0, std140) uniform Frame { sf_gpu_frame frame; };
 layout(set = 0, binding = 1, std430) readonly buffer Tiles { uint tiles[]; };
-layout(set = 0, binding = 2, std430) readonly buffer Args { sf_thick_args args; };
-layout(set = 0, binding = 3, std430) readonly buffer Views { sf_gpu_light_view views[]; };
+// Uniform, though written by a shader: lavapipe reads a uniform once for all lanes, and storage for each.
+layout(set = 0, binding = 2, std140) uniform Args { sf_thick_args args; };
+layout(set = 0, binding = 3, std140) uniform Views { sf_gpu_light_view views[SF_FRAME_LIGHTS]; };
 layout(set = 0, binding = 4) uniform sampler2D raw;
 layout(set = 0, binding = 5) uniform sampler2D blurred;
 layout(set = 0, binding = 6) uniform sampler2D light_map;
@@ -71,6 +74,9 @@ vec3 scattered_from(uint index, vec3 near, vec3 far, vec3 direction, float tau, 
     bool directional = uint(light.position.w) == SF_LIGHT_KIND_DIRECTIONAL;
     vec4 phases = octave_phases(dot(direction, to_light)); // of the ways of travel, -to_light in and -direction out
     vec3 q_near = (view.view * vec4(near, 1.0)).xyz, q_far = (view.view * vec4(far, 1.0)).xyz;
+    // Both maps are linear in homogeneous coordinates: transform the ends, not each sample.
+    vec4 s_near = light.world_to_map * vec4(near, 1.0), s_far = light.world_to_map * vec4(far, 1.0);
+    vec4 info = light.shadow;
     bool perspective = view.info.x > 0.5;
     float size = float(push.cell_size);
     float left = float(index) * size;
@@ -80,17 +86,19 @@ vec3 scattered_from(uint index, vec3 near, vec3 far, vec3 direction, float tau, 
         float u = (float(i) + 0.5) / float(STEPS);
         float s = opaque > 1e-4 ? -log(1.0 - u * opaque) / tau : u;
         vec3 world = mix(near, far, s);
-        if (!directional) {
+        if (POSITIONAL != 0u && !directional) {
             irradiance = light_irradiance(light, world, to_light);
             phases = octave_phases(dot(direction, to_light));
         }
-        vec3 at = light_map_of(perspective, mix(q_near, q_far, s), view.window);
-        vec2 inside = clamp(at.xy, 0.0, 0.99999);
+        vec3 at = light_map_of(POSITIONAL != 0u && perspective, mix(q_near, q_far, s), view.window);
+        // Each sample looks up the map at another place within the texel: together they filter it, and the texels' edges do not show as lines.
+        vec2 moved = at.xy + (fract(float(i) * vec2(0.7548777, 0.5698403)) - 0.5) / size; // Roberts's R2 sequence
+        vec2 inside = clamp(moved, 0.0, 0.99999);
         vec4 texel = texelFetch(light_map, ivec2(inside * size + vec2(left, 0.0)), 0);
-        float depth = inside == at.xy ? light_map_depth(texel, at.z) : 0.0;
+        float depth = inside == moved ? light_map_depth(texel, at.z) : 0.0;
         float lit = dot(phases, octave_transmittances(depth));
         if (SCENE_SHADOW != 0u)
-            lit *= scene_visibility(index, world);
+            lit *= info.x > 0.0 ? shadow_share(POSITIONAL != 0u && !directional, mix(s_near, s_far, s), info.y, info.z, info.w) : 1.0;
         sum += lit * irradiance;
     }
     return sum / float(STEPS);
@@ -109,7 +117,7 @@ void main()
     vec3 ray = world_ray(smoke_ndc(vec2(pixel)));
     float near = max(soft.r, frame.eye.w);
     float far = max(soft.g, near);
-    if (push.soft > 0.0)
+    if (SOFT != 0u)
         tau *= clamp((texelFetch(scene_depth, pixel, 0).r - near) / push.soft, 0.0, 1.0);
     float opaque = 1.0 - exp(-tau);
 

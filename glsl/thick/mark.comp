@@ -29,10 +29,8 @@ void main()
     vec2 pixels = 0.5 * frame.size.xy / float(push.scale);
     vec2 low = (vec2(x.x, -y.y) + 1.0) * pixels;
     vec2 high = (vec2(x.y, -y.x) + 1.0) * pixels;
-    // A blurred depth reaches beyond the spheres.
-    float reach = push.density_blur > 0.0 ? float(push.margin) : 0.0;
-    low -= reach;
-    high += reach;
+    low -= float(push.reach);
+    high += float(push.reach);
     vec2 size = vec2(push.width, push.height);
     if (any(lessThan(high, vec2(0.0))) || any(greaterThanEqual(low, size)))
         return;

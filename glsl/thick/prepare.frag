@@ -1,14 +1,18 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 // Empties the smoke's targets where they will be used, and takes the scene's depth down to the smoke's resolution: farthest and nearest
-// of each block in turn (a checkerboard), so that both sides of an edge are there when the picture is taken up again.
+// of each block in turn (a checkerboard), so that both sides of an edge are there when the picture is taken up again. Depths behind all smoke are
+// made equal.
 #include "shared/frame.h"
 #include "shared/thick.h"
 
 layout(constant_id = 0) const uint MARGIN = 0u; // as in tile.vert: both stages share their constants
 layout(constant_id = 1) const uint TO_FRAME = 0u;
 layout(set = 0, binding = 2) uniform sampler2D scene_depth;
+layout(set = 0, binding = 8, std430) writeonly buffer Mask { uint mask[]; };
 layout(push_constant) uniform Push { sf_thick_push push; };
+layout(location = 0) flat in vec2 behind;
+layout(location = 1) flat in uint number;
 layout(location = 0) out vec4 raw;
 layout(location = 1) out vec4 smoke;
 layout(location = 2) out float depth;
@@ -24,9 +28,12 @@ void main()
         float a = texelFetch(scene_depth, ivec2(last.x, first.y), 0).r;
         float b = texelFetch(scene_depth, ivec2(first.x, last.y), 0).r;
         float c = texelFetch(scene_depth, last, 0).r;
-        z = ((pixel.x ^ pixel.y) & 1) != 0 ? min(min(z, a), min(b, c)) : max(max(z, a), max(b, c));
+        float nearest = min(min(z, a), min(b, c));
+        z = ((pixel.x ^ pixel.y) & 1) != 0 ? nearest : max(max(z, a), max(b, c));
+        if (nearest < behind.x)
+            mask[number] = SF_THICK_TILE_CUT;
     }
     raw = vec4(SF_DEPTH_FAR, SF_DEPTH_FAR, 1.0, 0.0);
     smoke = vec4(0.0);
-    depth = z;
+    depth = min(z, behind.x);
 }

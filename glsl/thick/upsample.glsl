@@ -1,34 +1,40 @@
-// The four smoke pixels around a frame pixel and their weights.
+// Takes reduced smoke up to a pixel of the frame.
 #ifndef SF_THICK_UPSAMPLE_GLSL
 #define SF_THICK_UPSAMPLE_GLSL
 
-ivec2 upsample_low, upsample_high;
-vec4 upsample_weight;
+// By the sampler, bilinear: where no surface stands before the smoke's back.
+vec4 upsample_plainly(sampler2D image, vec2 frame_pixel)
+{
+    return textureLod(image, frame_pixel / (float(SCALE) * vec2(textureSize(image, 0))), 0.0);
+}
 
-void upsample_begin(vec2 frame_pixel)
+// The four nearest smoke pixels, weighted by distance and by how well the depth at which they were cut off agrees with this pixel's (joint
+// bilateral upsampling, Kopf et al. 2007).
+vec4 upsample_carefully(sampler2D image, vec2 frame_pixel)
 {
     vec2 at = frame_pixel / float(SCALE) - 0.5;
     vec2 base = floor(at);
     vec2 part = at - base;
     ivec2 limit = textureSize(smoke_depth, 0) - 1;
-    upsample_low = clamp(ivec2(base), ivec2(0), limit);
-    upsample_high = clamp(ivec2(base) + 1, ivec2(0), limit);
+    ivec2 low = clamp(ivec2(base), ivec2(0), limit), high = clamp(ivec2(base) + 1, ivec2(0), limit);
+    ivec2 right = ivec2(high.x, low.y), down = ivec2(low.x, high.y);
     vec4 bilinear = vec4((1.0 - part.x) * (1.0 - part.y), part.x * (1.0 - part.y), (1.0 - part.x) * part.y, part.x * part.y);
-    float here = texelFetch(scene_depth, ivec2(frame_pixel), 0).r;
-    vec4 there = vec4(texelFetch(smoke_depth, upsample_low, 0).r, texelFetch(smoke_depth, ivec2(upsample_high.x, upsample_low.y), 0).r,
-                      texelFetch(smoke_depth, ivec2(upsample_low.x, upsample_high.y), 0).r, texelFetch(smoke_depth, upsample_high, 0).r);
+    float here = min(texelFetch(scene_depth, ivec2(frame_pixel), 0).r, behind.x);
+    vec4 there = vec4(texelFetch(smoke_depth, low, 0).r, texelFetch(smoke_depth, right, 0).r, texelFetch(smoke_depth, down, 0).r,
+                      texelFetch(smoke_depth, high, 0).r); // depths behind all smoke are stored as behind.x
     // In shares of the smoke's extent: ground that slants away behind the smoke stays smooth, an object within it keeps its edge.
-    vec4 apart = (min(there, vec4(behind.x)) - min(here, behind.x)) / behind.y;
+    vec4 apart = (there - here) / behind.y;
     vec4 weight = (bilinear + 1e-3) / (0.02 + apart * apart);
-    upsample_weight = weight / dot(weight, vec4(1.0));
+    weight /= dot(weight, vec4(1.0));
+    return weight.x * texelFetch(image, low, 0) + weight.y * texelFetch(image, right, 0) + weight.z * texelFetch(image, down, 0) +
+           weight.w * texelFetch(image, high, 0);
 }
 
-vec4 upsample(sampler2D image)
+vec4 upsample(sampler2D image, vec2 frame_pixel)
 {
-    return upsample_weight.x * texelFetch(image, upsample_low, 0) +
-           upsample_weight.y * texelFetch(image, ivec2(upsample_high.x, upsample_low.y), 0) +
-           upsample_weight.z * texelFetch(image, ivec2(upsample_low.x, upsample_high.y), 0) +
-           upsample_weight.w * texelFetch(image, upsample_high, 0);
+    if (SCALE == 1u)
+        return texelFetch(image, ivec2(frame_pixel), 0);
+    return CHOICE == 1u ? upsample_plainly(image, frame_pixel) : upsample_carefully(image, frame_pixel);
 }
 
 #endif

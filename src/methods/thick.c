@@ -20,8 +20,6 @@ _Static_assert(offsetof(struct sf_particle_counts, dispatch) == SF_COUNTS_DISPAT
 _Static_assert(offsetof(struct sf_thick_args, draw_tiles) == SF_THICK_DRAW_TILES_OFFSET, "shared layout");
 _Static_assert(offsetof(struct sf_thick_args, dispatch_tiles) == SF_THICK_DISPATCH_TILES_OFFSET, "shared layout");
 
-enum { ATLAS_SIZE = 512 };
-
 static uint32_t divide_up(uint32_t a, uint32_t b)
 {
     return (a + b - 1) / b;
@@ -71,7 +69,7 @@ void sf_thick_update(const struct sf_method_frame *frame, void *state)
         .scale = scale,
         .tiles_x = divide_up(width, SF_THICK_TILE),
         .tiles_y = divide_up(height, SF_THICK_TILE),
-        .margin = blur_radius(camera_sigma(frame->scene)) + 1,
+        .reach = settings->density_blur > 0 ? blur_radius(camera_sigma(frame->scene)) : 0,
         .cells = cells,
         .cell_size = (uint32_t)settings->light_size,
         .detail = settings->detail,
@@ -144,7 +142,7 @@ enum sf_status sf_thick_light(struct sf_method_frame *frame, void *state, const 
     uint32_t width = thick->light_blur.width, height = thick->light_blur.height;
 
     thick->args = add_buffer(graph, "thick.args", sizeof(struct sf_thick_args));
-    frame->smoke_views = add_buffer(graph, "thick.views", push->cells * sizeof(struct sf_gpu_light_view));
+    frame->smoke_views = add_buffer(graph, "thick.views", SF_FRAME_LIGHTS * sizeof(struct sf_gpu_light_view));
     sf_resource raw = add_image(graph, "light.raw", SF_FORMAT_RGBA32F, width, height);
     sf_resource half_way = add_image(graph, "light.half", SF_FORMAT_RGBA32F, width, height);
     frame->smoke_map = add_image(graph, "light.map", SF_FORMAT_RGBA32F, width, height);
@@ -242,6 +240,7 @@ static void add_spheres(struct sf_method_frame *frame, struct sf_thick *thick)
         {.resource = thick->tiles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
         {.resource = frame->depth, .access = SF_ACCESS_SAMPLED, .binding = 2},
         {.resource = thick->args, .access = SF_ACCESS_STORAGE_READ, .binding = 7},
+        {.resource = thick->mask, .access = SF_ACCESS_STORAGE_MODIFY, .binding = 8},
         {.resource = thick->raw, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_DISCARD},
         {.resource = thick->smoke, .access = SF_ACCESS_COLOR, .binding = 1, .load = SF_LOAD_DISCARD},
         {.resource = thick->smoke_depth, .access = SF_ACCESS_COLOR, .binding = 2, .load = SF_LOAD_DISCARD},
@@ -284,11 +283,14 @@ static void add_spheres(struct sf_method_frame *frame, struct sf_thick *thick)
 static void add_march(struct sf_method_frame *frame, struct sf_thick *thick)
 {
     const struct sf_thick_settings *settings = &frame->scene->thick;
+    bool positional = false;
+    for (uint32_t i = 0; i < frame->scene->light_count; i++)
+        positional |= frame->scene->lights[i].kind != SF_LIGHT_DIRECTIONAL;
     const struct sf_use uses[] = {
         {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
         {.resource = thick->tiles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
-        {.resource = thick->args, .access = SF_ACCESS_STORAGE_READ, .binding = 2},
-        {.resource = frame->smoke_views, .access = SF_ACCESS_STORAGE_READ, .binding = 3},
+        {.resource = thick->args, .access = SF_ACCESS_UNIFORM, .binding = 2},
+        {.resource = frame->smoke_views, .access = SF_ACCESS_UNIFORM, .binding = 3},
         {.resource = thick->raw, .access = SF_ACCESS_SAMPLED, .binding = 4},
         {.resource = thick->blurred, .access = SF_ACCESS_SAMPLED, .binding = 5},
         {.resource = frame->smoke_map, .access = SF_ACCESS_SAMPLED, .binding = 6},
@@ -303,34 +305,37 @@ static void add_march(struct sf_method_frame *frame, struct sf_thick *thick)
                                          .uses = uses,
                                          .use_count = SF_COUNT(uses),
                                          .constants = {(uint32_t)settings->steps, frame->scene->light_count,
-                                                       settings->scene_shadow, (uint32_t)settings->octaves},
-                                         .constant_count = 4,
+                                                       settings->scene_shadow, (uint32_t)settings->octaves, positional,
+                                                       settings->soft > 0},
+                                         .constant_count = 6,
                                          .push = &thick->push,
                                          .push_bytes = sizeof thick->push,
                                          .indirect = thick->args,
                                          .indirect_offset = SF_THICK_DISPATCH_TILES_OFFSET});
 }
 
-static void add_over(struct sf_method_frame *frame, struct sf_thick *thick)
+/* `choice` as in tile.vert. */
+static void add_over(struct sf_method_frame *frame, struct sf_thick *thick, const char *name, uint32_t choice)
 {
     const struct sf_use uses[] = {
         {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
         {.resource = thick->tiles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
-        {.resource = thick->smoke, .access = SF_ACCESS_SAMPLED, .binding = 2},
-        {.resource = thick->smoke_depth, .access = SF_ACCESS_SAMPLED, .binding = 3},
+        {.resource = thick->smoke, .access = SF_ACCESS_SAMPLED, .binding = 2, .sampler = SF_SAMPLER_LINEAR},
+        {.resource = thick->smoke_depth, .access = SF_ACCESS_SAMPLED, .binding = 3, .sampler = SF_SAMPLER_LINEAR},
         {.resource = frame->depth, .access = SF_ACCESS_SAMPLED, .binding = 4},
         {.resource = thick->args, .access = SF_ACCESS_STORAGE_READ, .binding = 7},
+        {.resource = thick->mask, .access = SF_ACCESS_STORAGE_READ, .binding = 8},
         {.resource = frame->color, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_KEEP},
     };
     sf_graph_pass(frame->graph,
-                  &(struct sf_pass_desc){.name = "thick.over",
+                  &(struct sf_pass_desc){.name = name,
                                          .kind = SF_PASS_RASTER,
                                          .shader = "thick/tile.vert",
                                          .fragment = "thick/over.frag",
                                          .uses = uses,
                                          .use_count = SF_COUNT(uses),
-                                         .constants = {0, 1, thick->push.scale},
-                                         .constant_count = 3,
+                                         .constants = {0, 1, thick->push.scale, choice},
+                                         .constant_count = 4,
                                          .push = &thick->push,
                                          .push_bytes = sizeof thick->push,
                                          .indirect = thick->args,
@@ -345,12 +350,13 @@ static void add_aovs(struct sf_method_frame *frame, struct sf_thick *thick)
     const struct sf_use uses[] = {
         {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
         {.resource = thick->tiles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
-        {.resource = thick->smoke, .access = SF_ACCESS_SAMPLED, .binding = 2},
-        {.resource = thick->smoke_depth, .access = SF_ACCESS_SAMPLED, .binding = 3},
+        {.resource = thick->smoke, .access = SF_ACCESS_SAMPLED, .binding = 2, .sampler = SF_SAMPLER_LINEAR},
+        {.resource = thick->smoke_depth, .access = SF_ACCESS_SAMPLED, .binding = 3, .sampler = SF_SAMPLER_LINEAR},
         {.resource = frame->depth, .access = SF_ACCESS_SAMPLED, .binding = 4},
         {.resource = thick->raw, .access = SF_ACCESS_SAMPLED, .binding = 5},
         {.resource = thick->blurred, .access = SF_ACCESS_SAMPLED, .binding = 6},
         {.resource = thick->args, .access = SF_ACCESS_STORAGE_READ, .binding = 7},
+        {.resource = thick->mask, .access = SF_ACCESS_STORAGE_READ, .binding = 8},
         {.resource = frame->aov_radiance, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_CLEAR},
         {.resource = frame->aov_depths,
          .access = SF_ACCESS_COLOR,
@@ -385,11 +391,12 @@ enum sf_status sf_thick_view(struct sf_method_frame *frame, void *state, const s
     thick->raw = add_image(graph, "camera.raw", SF_FORMAT_RGBA32F, width, height);
     thick->smoke = add_image(graph, "smoke", SF_FORMAT_RGBA16F, width, height);
     thick->smoke_depth = add_image(graph, "smoke.scene_depth", SF_FORMAT_R32F, width, height);
-    thick->atlas = sf_graph_image(graph, &(struct sf_image_desc){.name = "thick.atlas",
-                                                                 .format = SF_FORMAT_R8_UNORM,
-                                                                 .lifetime = SF_IMPORTED,
-                                                                 .size = {.width = ATLAS_SIZE, .height = ATLAS_SIZE},
-                                                                 .outside = SF_ACCESS_SAMPLED});
+    thick->atlas =
+        sf_graph_image(graph, &(struct sf_image_desc){.name = "thick.atlas",
+                                                      .format = SF_FORMAT_R8_UNORM,
+                                                      .lifetime = SF_IMPORTED,
+                                                      .size = {.width = SF_THICK_ATLAS, .height = SF_THICK_ATLAS},
+                                                      .outside = SF_ACCESS_SAMPLED});
     add_tiles(frame, thick);
     add_spheres(frame, thick);
     uint32_t radius = blur_radius(camera_sigma(frame->scene));
@@ -399,7 +406,12 @@ enum sf_status sf_thick_view(struct sf_method_frame *frame, void *state, const s
     static const char *const names[] = {"thick.blur_x", "thick.blur_y"};
     add_blur(frame, thick, names, images, true, &thick->camera_blur, radius);
     add_march(frame, thick);
-    add_over(frame, thick);
+    if (thick->push.scale > 1) {
+        add_over(frame, thick, "thick.over_plain", 1);
+        add_over(frame, thick, "thick.over_cut", 2);
+    } else {
+        add_over(frame, thick, "thick.over", 0);
+    }
     if (frame->want_aovs)
         add_aovs(frame, thick);
     return SF_OK;
@@ -408,13 +420,13 @@ enum sf_status sf_thick_view(struct sf_method_frame *frame, void *state, const s
 enum sf_status sf_thick_assets_create(struct sf_gpu *gpu, const struct sf_scene *scene, const struct sf_log *log,
                                       void **assets)
 {
-    unsigned char *texels = malloc((size_t)ATLAS_SIZE * ATLAS_SIZE);
+    unsigned char *texels = malloc((size_t)SF_THICK_ATLAS * SF_THICK_ATLAS);
     if (!texels)
         return sf_fail(log, SF_ERROR_MEMORY, "thick.atlas: out of memory");
-    sf_thick_atlas((uint32_t)scene->sim.seed, ATLAS_SIZE, texels);
+    sf_thick_atlas((uint32_t)scene->sim.seed, SF_THICK_ATLAS, texels);
     struct sf_gpu_image *image = NULL;
-    enum sf_status status = sf_gpu_image_create(gpu, "thick.atlas", SF_FORMAT_R8_UNORM, ATLAS_SIZE, ATLAS_SIZE, 1,
-                                                SF_ACCESS_SAMPLED, texels, &image);
+    enum sf_status status = sf_gpu_image_create(gpu, "thick.atlas", SF_FORMAT_R8_UNORM, SF_THICK_ATLAS, SF_THICK_ATLAS,
+                                                1, SF_ACCESS_SAMPLED, texels, &image);
     free(texels);
     *assets = image;
     return status;

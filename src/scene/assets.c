@@ -9,7 +9,8 @@
 #include "scene/mesh.h"
 #include "scene/particle_file.h"
 
-/* Readers of files name the file; we say where in the scene it is named. So their error is caught, and told once, with both. */
+/* Readers of files name the file; we say where in the scene it is named. So their error is caught, and told once, with
+ * both. */
 struct listener {
     struct sf_log log;
     const struct sf_param_reader *reader;

@@ -164,8 +164,8 @@ static enum sf_status check_forces(struct sf_scene *scene, struct sf_param_reade
         if (force->kind == SF_FORCE_VORTEX && (status = need_direction(reader, force->axis)) != SF_OK)
             return status;
         drag = drag || (force->kind == SF_FORCE_DRAG && force->strength > 0);
-        air = air || force->kind == SF_FORCE_WIND || force->kind == SF_FORCE_TURBULENCE ||
-              force->kind == SF_FORCE_VORTEX;
+        air =
+            air || force->kind == SF_FORCE_WIND || force->kind == SF_FORCE_TURBULENCE || force->kind == SF_FORCE_VORTEX;
     }
     sf_param_reader_at(reader, "/forces");
     if (air && !drag)

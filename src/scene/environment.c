@@ -261,7 +261,8 @@ void sf_environment_radiance(const struct sf_environment *environment, const flo
         rgb[c] = (float)(value[c] * environment->intensity);
 }
 
-/* ---- spherical harmonics (Ramamoorthi and Hanrahan 2001, "An efficient representation for irradiance environment maps") ---- */
+/* ---- spherical harmonics (Ramamoorthi and Hanrahan 2001, "An efficient representation for irradiance environment
+ * maps") ---- */
 
 static void basis(const double d[3], double out[9])
 {
@@ -290,7 +291,8 @@ static void gather(double sums[9][3], const double d[3], double weight, const do
 
 static void gather_sky(const struct sf_environment *environment, double sums[9][3])
 {
-    /* The sky depends on y alone, and polynomials of the second degree have their mean over a ring at four points a quarter turn apart. */
+    /* The sky depends on y alone, and polynomials of the second degree have their mean over a ring at four points a
+     * quarter turn apart. */
     for (int j = 0; j < SKY_ROWS; j++) {
         double y = (j + 0.5) / SKY_ROWS * 2 - 1, s = sqrt(1 - y * y), rgb[3];
 
@@ -327,9 +329,10 @@ static void gather_picture(const struct sf_environment *environment, double sums
 
 void sf_environment_project(struct sf_environment *environment)
 {
-    /* The squares of the basis' constants, for what comes in and what goes out, times the cosine's share in each band: 1, 2/3, 1/4. */
+    /* The squares of the basis' constants, for what comes in and what goes out, times the cosine's share in each band:
+     * 1, 2/3, 1/4. */
     static const double band[3] = {1, 2.0 / 3, 1.0 / 4};
-    const double square[9] = {1 / (4 * PI),  3 / (4 * PI),  3 / (4 * PI),  3 / (4 * PI), 15 / (4 * PI),
+    const double square[9] = {1 / (4 * PI),  3 / (4 * PI),  3 / (4 * PI),  3 / (4 * PI),  15 / (4 * PI),
                               15 / (4 * PI), 5 / (16 * PI), 15 / (4 * PI), 15 / (16 * PI)};
     double sums[9][3] = {{0}};
 
@@ -342,8 +345,11 @@ void sf_environment_project(struct sf_environment *environment)
             sums[0][c] = environment->color[c] * 4 * PI;
     for (int i = 0; i < 9; i++)
         for (int c = 0; c < 3; c++)
-            environment->sh[i][c] =
-                (float)(sums[i][c] * square[i] * band[i == 0 ? 0 : i < 4 ? 1 : 2] * environment->intensity);
+            environment->sh[i][c] = (float)(sums[i][c] * square[i] *
+                                            band[i == 0  ? 0
+                                                 : i < 4 ? 1
+                                                         : 2] *
+                                            environment->intensity);
 }
 
 void sf_environment_ambient(const struct sf_environment *environment, const float normal[3], float rgb[3])

@@ -7,8 +7,29 @@
 #include "base/hash.h"
 #include "scene/table.h"
 
-enum { SCENE_MIB_MAX = 64, REASON_BYTES = 256 };
+/* A million particles take three million objects and lists, and fifteen million values. */
+enum { SCENE_MIB_MAX = 64, NESTS_MAX = 4000000, VALUES_MAX = 20000000, REASON_BYTES = 256 };
 #define SCENE_BYTES_MAX ((size_t)SCENE_MIB_MAX << 20)
+
+/* Every `[]` of three bytes is more than a hundred in memory: what would take gigabytes is refused before it is parsed.
+ */
+static bool is_bounded(const char *text, size_t bytes)
+{
+    size_t nests = 0, values = 0;
+    bool inside = false; /* a string */
+
+    for (size_t i = 0; i < bytes; i++) {
+        if (inside && text[i] == '\\')
+            i++;
+        else if (text[i] == '"')
+            inside = !inside;
+        else if (!inside) {
+            nests += text[i] == '[' || text[i] == '{';
+            values += text[i] == ',';
+        }
+    }
+    return nests <= NESTS_MAX && values <= VALUES_MAX;
+}
 
 static json_t *parse_json(const char *name, const char *text, size_t bytes, const struct sf_log *log)
 {
@@ -24,6 +45,12 @@ static json_t *parse_json(const char *name, const char *text, size_t bytes, cons
         sf_fail(log, SF_ERROR_SCENE, "%s: the file is empty; a scene is a JSON object", name);
         return NULL;
     }
+    if (!is_bounded(text, bytes)) {
+        sf_fail(log, SF_ERROR_SCENE,
+                "%s: more than %d lists and objects or %d values; long lists go into CSV or PLY files", name, NESTS_MAX,
+                VALUES_MAX);
+        return NULL;
+    }
     tree = json_loadb(text, bytes, JSON_REJECT_DUPLICATES, &error);
     if (!tree) {
         sf_param_clean(error.text, reason, sizeof reason);
@@ -36,7 +63,8 @@ static json_t *parse_json(const char *name, const char *text, size_t bytes, cons
     return tree;
 }
 
-/* Takes comments and $schema out of the tree, so that they do not count in the hash. The parser has bounded the depth. */
+/* Takes comments and $schema out of the tree, so that they do not count in the hash. The parser has bounded the depth.
+ */
 static void strip(json_t *tree)
 {
     const char *key;
@@ -44,11 +72,8 @@ static void strip(json_t *tree)
     size_t i;
 
     json_object_del(tree, "//");
-    json_object_foreach (tree, key, value)
-        strip(value);
-    json_array_foreach (tree, i, value)
-        if (json_is_object(value) || json_is_array(value))
-            strip(value);
+    json_object_foreach(tree, key, value) strip(value);
+    json_array_foreach(tree, i, value) if (json_is_object(value) || json_is_array(value)) strip(value);
 }
 
 static enum sf_status hash_tree(struct sf_scene *scene, json_t *tree, const struct sf_log *log)

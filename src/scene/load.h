@@ -5,10 +5,11 @@
 #include "params/json.h"
 #include "scene/scene.h"
 
-/* What one key alone cannot say: directions have a length, keys ascend, the camera looks somewhere. Normalises directions, and fills in
- * values that depend on others. Before files are read. */
+/* What one key alone cannot say: directions have a length, keys ascend, the camera looks somewhere. Normalises
+ * directions, and fills in values that depend on others. Before files are read. */
 enum sf_status sf_scene_check(struct sf_scene *scene, struct sf_param_reader *reader);
-/* Reads the files that the scene names, seen from the folder of scene->path, and stirs their contents into scene->hash. */
+/* Reads the files that the scene names, seen from the folder of scene->path, and stirs their contents into scene->hash.
+ */
 enum sf_status sf_scene_load_assets(struct sf_scene *scene, struct sf_param_reader *reader);
 /* After the files: every explicit particle, and the number of them all. */
 enum sf_status sf_scene_check_particles(struct sf_scene *scene, struct sf_param_reader *reader);

@@ -1,15 +1,19 @@
-/* Normals for meshes that come without. At each corner of a triangle: the mean of the normals of the triangles around its point that are turned
- * by less than 60 degrees against it, weighted by the angle that each has there (so that it does not matter how a polygon was cut). Vertices
- * are split where corners disagree, and shared where they do not.
+/* Normals for meshes that come without. At each corner of a triangle: the mean of the normals of the triangles around
+ * its point that are turned by less than 60 degrees against it, weighted by the angle that each has there (so that it
+ * does not matter how a polygon was cut). Vertices are split where corners disagree, and shared where they do not.
  *
- * Points are told apart by the bits of their coordinates, so that it does not matter how the file shared its vertices. */
+ * Points are told apart by the bits of their coordinates, so that it does not matter how the file shared its vertices.
+ */
 #include <stdlib.h>
 #include <string.h>
 #include "base/hash.h"
 #include "scene/mesh.h"
 #include "scene/vector.h"
 
-enum { CROWD = 64, NONE = UINT32_MAX }; /* around a point with more triangles all count, or the work would grow with the square */
+enum {
+    CROWD = 64,
+    NONE = UINT32_MAX
+}; /* around a point with more triangles all count, or the work would grow with the square */
 static const double FOLD_COSINE = 0.5, SAME_COSINE = 0.99999;
 
 struct shape {
@@ -156,8 +160,8 @@ static bool prepare(struct shape *shape)
     shape->source = malloc(corners * sizeof *shape->source);
     shape->normals = malloc(corners * 3 * sizeof *shape->normals);
     shape->indices = malloc(corners * sizeof *shape->indices);
-    if (!shape->point || !shape->facing || !shape->angles || !shape->starts || !shape->corners || !shape->first || !shape->next ||
-        !shape->source || !shape->normals || !shape->indices)
+    if (!shape->point || !shape->facing || !shape->angles || !shape->starts || !shape->corners || !shape->first ||
+        !shape->next || !shape->source || !shape->normals || !shape->indices)
         return false;
     memset(shape->first, 0xff, vertices * sizeof *shape->first);
     return find_points(shape);

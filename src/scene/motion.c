@@ -1,5 +1,6 @@
-/* Where cameras and emitters are at a moment. Paths are cubic Hermite curves whose tangents are those of Catmull and Rom for keys at uneven
- * times: m_i = (p_{i+1} - p_{i-1}) / (t_{i+1} - t_{i-1}); at an open end, the difference to the one neighbour. */
+/* Where cameras and emitters are at a moment. Paths are cubic Hermite curves whose tangents are those of Catmull and
+ * Rom for keys at uneven times: m_i = (p_{i+1} - p_{i-1}) / (t_{i+1} - t_{i-1}); at an open end, the difference to the
+ * one neighbour. */
 #include <math.h>
 #include <string.h>
 #include "scene/scene.h"

@@ -1,4 +1,5 @@
-/* CSV: a header line that names the columns, then a line for each particle. '#' begins a comment line; empty lines are passed over. */
+/* CSV: a header line that names the columns, then a line for each particle. '#' begins a comment line; empty lines are
+ * passed over. */
 #include <stdio.h>
 #include <string.h>
 #include "params/number.h"
@@ -83,8 +84,9 @@ static enum sf_status read_row(const struct sf_particle_source *source, const st
             return status;
     }
     if (at)
-        return sf_fail(source->log, SF_ERROR_SCENE, "%s: line %zu: more fields than the %u columns that the header names",
-                       source->path, line->number, (unsigned)source->column_count);
+        return sf_fail(source->log, SF_ERROR_SCENE,
+                       "%s: line %zu: more fields than the %u columns that the header names", source->path,
+                       line->number, (unsigned)source->column_count);
     return SF_OK;
 }
 

@@ -92,8 +92,9 @@ enum sf_status sf_particle_put(const struct sf_particle_source *source, const st
     return SF_OK;
 }
 
-enum sf_status sf_particle_not_a_number(const struct sf_particle_source *source, const struct sf_particle_column *column,
-                                        const char *place, size_t number, const char *text, size_t length)
+enum sf_status sf_particle_not_a_number(const struct sf_particle_source *source,
+                                        const struct sf_particle_column *column, const char *place, size_t number,
+                                        const char *text, size_t length)
 {
     char start[64], shown[48];
 

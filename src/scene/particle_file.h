@@ -1,12 +1,14 @@
-/* Explicit particles from CSV and PLY files. Strict: every row must be whole, every number in its range, or the row is named. */
+/* Explicit particles from CSV and PLY files. Strict: every row must be whole, every number in its range, or the row is
+ * named. */
 #ifndef SF_SCENE_PARTICLE_FILE_H
 #define SF_SCENE_PARTICLE_FILE_H
 
 #include "params/params.h"
 #include "scene/scene.h"
 
-/* Reads by the name's ending (.csv, .ply). The list is in the arena; *hash is of the file's bytes. SF_ERROR_SCENE: unsupported ending,
- * malformed, out of range, more than SF_PARTICLES_MAX; SF_ERROR_IO; SF_ERROR_MEMORY. The messages begin with the path. */
+/* Reads by the name's ending (.csv, .ply). The list is in the arena; *hash is of the file's bytes. SF_ERROR_SCENE:
+ * unsupported ending, malformed, out of range, more than SF_PARTICLES_MAX; SF_ERROR_IO; SF_ERROR_MEMORY. The messages
+ * begin with the path. */
 enum sf_status sf_particle_file_read(const char *path, struct sf_arena *arena, const struct sf_log *log,
                                      struct sf_listed **list, uint32_t *count, uint64_t *hash);
 
@@ -40,8 +42,9 @@ enum sf_status sf_particle_check_columns(const struct sf_particle_source *source
 enum sf_status sf_particle_put(const struct sf_particle_source *source, const struct sf_particle_column *column,
                                double value, const char *place, size_t number, struct sf_listed *particle);
 /* SF_ERROR_SCENE: the text of a number is none. */
-enum sf_status sf_particle_not_a_number(const struct sf_particle_source *source, const struct sf_particle_column *column,
-                                        const char *place, size_t number, const char *text, size_t length);
+enum sf_status sf_particle_not_a_number(const struct sf_particle_source *source,
+                                        const struct sf_particle_column *column, const char *place, size_t number,
+                                        const char *text, size_t length);
 enum sf_status sf_particle_read_csv(struct sf_particle_source *source, struct sf_listed **list, uint32_t *count);
 enum sf_status sf_particle_read_ply(struct sf_particle_source *source, struct sf_listed **list, uint32_t *count);
 

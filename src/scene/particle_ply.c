@@ -1,5 +1,5 @@
-/* PLY: ascii 1.0 and binary_little_endian 1.0. The element "vertex" comes first and has scalar properties named as the columns of a CSV
- * file; elements after it are not looked at. */
+/* PLY: ascii 1.0 and binary_little_endian 1.0. The element "vertex" comes first and has scalar properties named as the
+ * columns of a CSV file; elements after it are not looked at. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,7 +31,8 @@ static enum sf_status fail(const struct ply *ply, const char *what)
     return sf_fail(ply->source->log, SF_ERROR_SCENE, "%s: line %zu: %s", ply->source->path, ply->line, what);
 }
 
-/* The next line of the header, cut into words; the number of words, or -1 at the file's end and for a line that is too long. */
+/* The next line of the header, cut into words; the number of words, or -1 at the file's end and for a line that is too
+ * long. */
 static int next_words(struct ply *ply, char line[LINE_BYTES], char *words[WORDS])
 {
     const char *newline = memchr(ply->at, '\n', (size_t)(ply->end - ply->at));
@@ -172,7 +173,8 @@ static double load_scalar(const unsigned char *bytes, enum scalar type)
 
 static enum sf_status cut_short(const struct ply *ply, uint64_t row)
 {
-    return sf_fail(ply->source->log, SF_ERROR_SCENE, "%s: is cut short: the header promises %llu vertices, the data end in vertex %llu",
+    return sf_fail(ply->source->log, SF_ERROR_SCENE,
+                   "%s: is cut short: the header promises %llu vertices, the data end in vertex %llu",
                    ply->source->path, (unsigned long long)ply->count, (unsigned long long)row);
 }
 
@@ -192,7 +194,8 @@ static enum sf_status read_binary(struct ply *ply, struct sf_listed *list)
             double value = load_scalar(at, ply->types[i]);
 
             at += scalars[ply->types[i]].bytes;
-            if ((status = sf_particle_put(source, source->columns[i], value, "vertex", (size_t)row, &list[row])) != SF_OK)
+            if ((status = sf_particle_put(source, source->columns[i], value, "vertex", (size_t)row, &list[row])) !=
+                SF_OK)
                 return status;
         }
     }
@@ -225,7 +228,8 @@ static enum sf_status read_ascii(struct ply *ply, struct sf_listed *list)
             if (!sf_number_parse(start, (size_t)(at - start), &value))
                 return sf_particle_not_a_number(source, source->columns[i], "vertex", (size_t)row, start,
                                                 (size_t)(at - start));
-            if ((status = sf_particle_put(source, source->columns[i], value, "vertex", (size_t)row, &list[row])) != SF_OK)
+            if ((status = sf_particle_put(source, source->columns[i], value, "vertex", (size_t)row, &list[row])) !=
+                SF_OK)
                 return status;
         }
         while (at < ply->end && is_space(*at) && *at != '\n')

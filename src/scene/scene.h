@@ -1,8 +1,9 @@
-/* A scene, validated: plain structs that everything downstream reads. Units: metres, seconds, degrees in files and here, radiance in linear
- * Rec. 709, right-handed, +Y up. docs/scene.md says what each means to the last sign.
+/* A scene, validated: plain structs that everything downstream reads. Units: metres, seconds, degrees in files and
+ * here, radiance in linear Rec. 709, right-handed, +Y up. docs/scene.md says what each means to the last sign.
  *
- * Two clocks. Camera times count from frame 0: frame n is at n/fps. Simulation times (an emitter's start and path, turbulence) count from the
- * beginning of the simulation, which is sim.preroll seconds before frame 0: frame n is at preroll + n/fps.
+ * Two clocks. Camera times count from frame 0: frame n is at n/fps. Simulation times (an emitter's start and path,
+ * turbulence) count from the beginning of the simulation, which is sim.preroll seconds before frame 0: frame n is at
+ * preroll + n/fps.
  *
  * A field that an object's kind does not take (docs/params.md lists them) is zero. */
 #ifndef SF_SCENE_SCENE_H
@@ -21,7 +22,7 @@ enum {
     SF_EMITTERS_MAX = 16,
     SF_FORCES_MAX = 16,
     SF_RAMP_MAX = 16,
-    SF_PATH_MAX = 64,        /* keyframes of a camera or an emitter's path */
+    SF_PATH_MAX = 64, /* keyframes of a camera or an emitter's path */
     SF_PARTICLES_MAX = 1 << 20,
 };
 
@@ -29,7 +30,7 @@ enum sf_camera_kind { SF_CAMERA_FIXED, SF_CAMERA_ORBIT, SF_CAMERA_KEYFRAMES };
 struct sf_camera_key {
     float time; /* s, ascending */
     float eye[3], target[3];
-    float fov;  /* deg, vertical */
+    float fov; /* deg, vertical */
 };
 struct sf_camera {
     int32_t kind;
@@ -37,7 +38,7 @@ struct sf_camera {
     float fov;       /* deg, vertical, full angle */
     float near_clip; /* m: nothing nearer is drawn (view-space depth) */
     /* orbit: the eye circles the target's vertical axis, starting at `eye` */
-    float period;    /* s for one turn, counter-clockwise seen from above when positive */
+    float period;               /* s for one turn, counter-clockwise seen from above when positive */
     struct sf_camera_key *keys; /* keyframes: Catmull-Rom through eye and target, linear in fov */
     uint32_t key_count;
 };
@@ -46,7 +47,8 @@ enum sf_light_kind { SF_LIGHT_DIRECTIONAL, SF_LIGHT_POINT, SF_LIGHT_SPOT };
 struct sf_light {
     int32_t kind;
     float color[3];
-    float intensity;    /* directional: irradiance of a surface facing it, W/m2 (times color); point, spot: radiant intensity, W/sr */
+    float intensity;    /* directional: irradiance of a surface facing it, W/m2 (times color); point, spot: radiant
+                           intensity, W/sr */
     float direction[3]; /* directional, spot: the way the light travels; normalised by the loader */
     float position[3];  /* point, spot */
     float inner, outer; /* spot: half angles in deg; smoothstep of the cosine between them */
@@ -56,21 +58,23 @@ struct sf_light {
 enum sf_object_kind { SF_OBJECT_PLANE, SF_OBJECT_BOX, SF_OBJECT_SPHERE, SF_OBJECT_CYLINDER, SF_OBJECT_MESH };
 struct sf_object {
     int32_t kind;
-    float position[3];  /* plane: a point of it; else the centre */
-    float rotation[3];  /* deg about x, then y, then z (R = Rz Ry Rx), of the object about its position */
-    float size[3];      /* box: full edge lengths */
-    float radius;       /* sphere, cylinder */
-    float height;       /* cylinder: full, along its own y */
-    float normal[3];    /* plane: normalised; rotation does not apply */
-    float scale;        /* mesh */
-    float albedo[3];    /* Lambertian */
-    float albedo2[3];   /* checker's second colour; equal to albedo when no checker is asked for */
-    float checker;      /* m: edge of a checker's square on planes, 0: none. With e = +z (|normal.z| > 0.9: +x), u = normalize(cross(normal, e)),
-                           v = cross(u, normal): albedo where floor(u.(x - position)/checker) + floor(v.(..)/checker) is even */
-    bool collide;       /* particles collide with it (not meshes) */
+    float position[3]; /* plane: a point of it; else the centre */
+    float rotation[3]; /* deg about x, then y, then z (R = Rz Ry Rx), of the object about its position */
+    float size[3];     /* box: full edge lengths */
+    float radius;      /* sphere, cylinder */
+    float height;      /* cylinder: full, along its own y */
+    float normal[3];   /* plane: normalised; rotation does not apply */
+    float scale;       /* mesh */
+    float albedo[3];   /* Lambertian */
+    float albedo2[3];  /* checker's second colour; equal to albedo when no checker is asked for */
+    /* m: edge of a checker's square on planes, 0: none. With e = +z (if |normal.z| > 0.9: +x), u =
+     * normalize(cross(normal, e)) and v = cross(u, normal), it is albedo where floor(u.(x - position)/checker) +
+     * floor(v.(x - position)/checker) is even. */
+    float checker;
+    bool collide;                /* particles collide with it (not meshes) */
     float restitution, friction; /* of the collision: 0..1 */
-    const char *file;   /* mesh */
-    uint32_t mesh;      /* index into meshes, when kind is mesh */
+    const char *file;            /* mesh */
+    uint32_t mesh;               /* index into meshes, when kind is mesh */
 };
 
 struct sf_mesh { /* triangles, deduplicated by file */
@@ -83,10 +87,10 @@ struct sf_mesh { /* triangles, deduplicated by file */
 };
 
 struct sf_medium {
-    float extinction; /* 1/m: default of emitters that do not state theirs */
-    float albedo[3];  /* single-scattering */
-    float g;          /* Henyey-Greenstein, -0.99..0.99 */
-    float emission[3]; /* W/(m2 sr), times extinction, as METHODS' medium has it */
+    float extinction;  /* 1/m: default of emitters that do not state theirs */
+    float albedo[3];   /* single-scattering */
+    float g;           /* Henyey-Greenstein, -0.99..0.99 */
+    float emission[3]; /* W/(m2 sr), times extinction */
 };
 
 enum sf_emitter_kind { SF_EMITTER_CONE, SF_EMITTER_SPHERE, SF_EMITTER_BOX, SF_EMITTER_MESH, SF_EMITTER_LIST };
@@ -94,7 +98,7 @@ struct sf_path_key {
     float time;
     float position[3];
 };
-struct sf_listed { /* one explicit particle, exactly as stated */
+struct sf_listed {                       /* one explicit particle, exactly as stated */
     float centre[3], radius, extinction; /* m, m, 1/m */
     float velocity[3];                   /* m/s, default 0 */
     float age, lifetime;                 /* s; lifetime 0: does not die */
@@ -103,31 +107,34 @@ struct sf_listed { /* one explicit particle, exactly as stated */
 struct sf_emitter {
     int32_t kind;
     float position[3];
-    float direction[3];   /* cone's axis; normalised. Sphere, box, mesh: direction of the first velocity; 0,0,0: outward (from the centre; mesh: normal) */
-    float angle;          /* cone: half angle in deg; elsewhere the spread about direction */
-    float radius;         /* cone: of its mouth; sphere: of it */
-    float size[3];        /* box */
-    const char *file;     /* mesh, or list's CSV/PLY */
+    float direction[3]; /* cone's axis; normalised. Sphere, box, mesh: direction of the first velocity; 0,0,0: outward
+                           (from the centre; mesh: normal) */
+    float angle;        /* cone: half angle in deg; elsewhere the spread about direction */
+    float radius;       /* cone: of its mouth; sphere: of it */
+    float size[3];      /* box */
+    const char *file;   /* mesh, or list's CSV/PLY */
     uint32_t mesh;
     float scale;
-    bool surface;         /* sphere, box: only from the surface */
-    float rate;           /* 1/s */
-    int32_t burst;        /* particles at `start` */
+    bool surface;          /* sphere, box: only from the surface */
+    float rate;            /* 1/s */
+    int32_t burst;         /* particles at `start` */
     float start, duration; /* s on the simulation's clock; duration 0: for ever. A list appears at `start`, all of it */
-    float lifetime[2];    /* s, uniform between */
-    float speed[2];       /* m/s */
+    float lifetime[2];     /* s, uniform between */
+    float speed[2];        /* m/s */
     float particle_radius[2]; /* m at birth */
-    float growth;         /* m/s */
-    float extinction;     /* 1/m at birth; never negative here: the loader puts the medium's where the file gives none */
-    float dilution;       /* 0: extinction stays as the particle grows; 1: falls with the radius cubed (mass is kept):
-                             extinction * pow(radius_at_birth / radius, 3 dilution) */
-    float fade_in, fade_out; /* fractions of life over which extinction rises from 0 and falls to 0: with l = age/lifetime, times
-                                smoothstep(0, fade_in, l) and 1 - smoothstep(1 - fade_out, 1, l); 0: no fade */
-    float temperature;    /* K above the ambient at birth: drives buoyancy */
-    float cooling;        /* 1/s: temperature * exp(-cooling age) */
-    float spin;           /* rad/s, of the atlas tile, random sign */
-    float inherit;        /* share of the emitter's own velocity given to the particle */
-    bool still;           /* list: does not move, age or die */
+    float growth;             /* m/s */
+    float extinction;         /* 1/m at birth; the loader puts the medium's where the file gives none */
+    /* 0: extinction stays as the particle grows; 1: it falls with the radius cubed, so that mass is kept:
+     * extinction * pow(radius_at_birth / radius, 3 dilution). */
+    float dilution;
+    /* Fractions of life over which extinction rises from 0 and falls to 0. With l = age/lifetime: times smoothstep(0,
+     * fade_in, l) and 1 - smoothstep(1 - fade_out, 1, l); 0: no fade. */
+    float fade_in, fade_out;
+    float temperature;        /* K above the ambient at birth: drives buoyancy */
+    float cooling;            /* 1/s: temperature * exp(-cooling age) */
+    float spin;               /* rad/s, of the atlas tile, random sign */
+    float inherit;            /* share of the emitter's own velocity given to the particle */
+    bool still;               /* list: does not move, age or die */
     struct sf_path_key *path; /* moving emitter: Catmull-Rom; positions relative to `position` */
     uint32_t path_count;
     bool path_loop;
@@ -135,42 +142,52 @@ struct sf_emitter {
     uint32_t list_count;
 };
 
-enum sf_force_kind { SF_FORCE_GRAVITY, SF_FORCE_BUOYANCY, SF_FORCE_DRAG, SF_FORCE_WIND, SF_FORCE_TURBULENCE, SF_FORCE_VORTEX };
+enum sf_force_kind {
+    SF_FORCE_GRAVITY,
+    SF_FORCE_BUOYANCY,
+    SF_FORCE_DRAG,
+    SF_FORCE_WIND,
+    SF_FORCE_TURBULENCE,
+    SF_FORCE_VORTEX
+};
 /* dv/dt = gravity + buoyancy + drag (u(x, t) - v), where u is the sum of all winds, turbulences and vortices. */
 struct sf_force {
     int32_t kind;
     float acceleration[3]; /* gravity: m/s2 */
-    float strength; /* buoyancy: m/s2 per K, along +y; drag: 1/s towards the local wind; turbulence: m/s (rms) of the velocity field; vortex: m/s at radius */
+    float strength;    /* buoyancy: m/s2 per K, along +y; drag: 1/s towards the local wind; turbulence: m/s (rms) of the
+                          velocity field; vortex: m/s at radius */
     float velocity[3]; /* wind: m/s, what drag pulls towards */
-    float scale;    /* turbulence: m, size of the largest eddies */
-    int32_t octaves; /* turbulence */
-    float rate;     /* turbulence: 1/s, how fast the field changes */
+    float scale;       /* turbulence: m, size of the largest eddies */
+    int32_t octaves;   /* turbulence */
+    float rate;        /* turbulence: 1/s, how fast the field changes */
     float position[3], axis[3]; /* vortex: a point of its axis, and the axis, normalised */
-    float radius;   /* vortex: core radius. At distance d from the axis, with s = d/radius and e pointing away from the axis,
-                       u = 2s/(1 + s^2) (strength cross(axis, e) - pull e) */
-    float pull;     /* vortex: m/s inward at radius */
+    float radius; /* vortex: core radius. At distance d from the axis, with s = d/radius and e pointing away from the
+                     axis, u = 2s/(1 + s^2) (strength cross(axis, e) - pull e) */
+    float pull;   /* vortex: m/s inward at radius */
 };
 
 enum sf_environment_kind { SF_ENVIRONMENT_SKY, SF_ENVIRONMENT_COLOR, SF_ENVIRONMENT_LATLONG, SF_ENVIRONMENT_CUBE };
 struct sf_environment {
     int32_t kind;
-    float zenith[3], horizon[3], ground[3]; /* gradient sky radiance along direction d: mix(horizon, zenith, smoothstep(0, 1, d.y)) above,
-                                               mix(horizon, ground, smoothstep(0, 0.25, -d.y)) below */
+    float zenith[3], horizon[3],
+        ground[3]; /* gradient sky radiance along direction d: mix(horizon, zenith, smoothstep(0, 1, d.y)) above,
+                      mix(horizon, ground, smoothstep(0, 0.25, -d.y)) below */
     float color[3];
     const char *file;     /* lat-long: EXR, HDR, PNG */
     const char *files[6]; /* cube: +x -x +y -y +z -z */
     float intensity;      /* times the picture or gradient */
-    float rotation;       /* deg about +y: along d one sees the picture's radiance along Ry(-rotation) d. `pixels` are not yet rotated, `sh` is */
-    bool visible;         /* drawn behind the scene; else `background` */
+    float rotation; /* deg about +y: along d one sees the picture's radiance along Ry(-rotation) d. `pixels` are not yet
+                       rotated, `sh` is */
+    bool visible;   /* drawn behind the scene; else `background` */
     float background[3];
-    /* loaded pixels, linear, before `intensity`: lat-long [height][width][3], centre of the picture looks along -z, +y up, +x to the right of it
-     * (u = 1/2 + atan2(x, -z)/2pi, v = acos(y)/pi from the top row); NULL for sky and color. At most 1024x512. A cube file is resampled to
-     * this by the loader. */
+    /* loaded pixels, linear, before `intensity`: lat-long [height][width][3], centre of the picture looks along -z, +y
+     * up, +x to the right of it (u = 1/2 + atan2(x, -z)/2pi, v = acos(y)/pi from the top row); NULL for sky and color.
+     * At most 1024x512. A cube file is resampled to this by the loader. */
     float *pixels;
     uint32_t width, height;
-    /* Radiance (times intensity) convolved with the clamped cosine over pi, so that a constant L gives L: irradiance over pi of a surface with
-     * normal n is sh0 + sh1 y + sh2 z + sh3 x + sh4 xy + sh5 yz + sh6 (3zz - 1) + sh7 xz + sh8 (xx - yy): the basis' constants are multiplied
-     * in already. Filled by the loader for every kind. */
+    /* Radiance (times intensity) convolved with the clamped cosine over pi, so that a constant L gives L: irradiance
+     * over pi of a surface with normal n is sh0 + sh1 y + sh2 z + sh3 x + sh4 xy + sh5 yz + sh6 (3zz - 1) + sh7 xz +
+     * sh8 (xx - yy): the basis' constants are multiplied in already. Filled by the loader for every kind. */
     float sh[9][3];
 };
 
@@ -197,26 +214,27 @@ struct sf_output_settings {
     int32_t tone;
 };
 struct sf_shadow_settings {
-    int32_t map_size;   /* px: exponential shadow map of scene on scene and on smoke, per light */
-    float softness;     /* px: sigma of its blur */
-    float exponent;     /* of the map */
+    int32_t map_size; /* px: exponential shadow map of scene on scene and on smoke, per light */
+    float softness;   /* px: sigma of its blur */
+    float exponent;   /* of the map */
 };
 struct sf_thick_settings {
-    int32_t resolution;  /* of the smoke's passes, against the frame */
-    int32_t steps;       /* samples along the camera ray */
-    float blur;          /* px of the full frame: sigma of the camera-view blur */
-    int32_t octaves;     /* of multiple scattering, 1..4; 1 is single scattering, what the reference computes */
-    int32_t light_size;  /* px: light-view map, per light */
-    float light_blur;    /* px: sigma in the light map */
-    float detail;        /* 0..1 strength of the atlas in density */
-    float detail_scale;  /* tiles across a particle's diameter */
-    float density_blur;  /* 0: exact optical depth; 1: blurred as the thesis does */
-    float ambient;       /* times the environment's */
-    float thin;          /* optical depth across a particle below which its surfaces recede from the min/max views; 0: never, as in the thesis */
-    float soft;          /* m: extra fade towards the scene's surface (thesis pass 10); 0: none, the clipped chord does it */
-    float life_fade;     /* exponent of the thesis' alpha-from-life; 0: none */
-    bool scene_shadow;   /* scene objects shadow the smoke */
-    bool ground_shadow;  /* smoke shadows the scene */
+    int32_t resolution; /* of the smoke's passes, against the frame */
+    int32_t steps;      /* samples along the camera ray */
+    float blur;         /* px of the full frame: sigma of the camera-view blur */
+    int32_t octaves;    /* of multiple scattering, 1..4; 1 is single scattering, what the reference computes */
+    int32_t light_size; /* px: light-view map, per light */
+    float light_blur;   /* px: sigma in the light map */
+    float detail;       /* 0..1 strength of the atlas in density */
+    float detail_scale; /* tiles across a particle's diameter */
+    float density_blur; /* 0: exact optical depth; 1: blurred as the thesis does */
+    float ambient;      /* times the environment's */
+    float thin; /* optical depth across a particle below which its surfaces recede from the min/max views; 0: never, as
+                   in the thesis */
+    float soft; /* m: extra fade towards the scene's surface (thesis pass 10); 0: none, the clipped chord does it */
+    float life_fade;    /* exponent of the thesis' alpha-from-life; 0: none */
+    bool scene_shadow;  /* scene objects shadow the smoke */
+    bool ground_shadow; /* smoke shadows the scene */
 };
 
 struct sf_scene {
@@ -245,15 +263,17 @@ struct sf_scene {
     struct sf_arena arena;
 };
 
-/* sf_scene_load, sf_scene_parse, sf_scene_destroy, sf_scene_describe: sfumato.h. Errors (SF_ERROR_SCENE; SF_ERROR_IO when the scene file itself
- * cannot be read; SF_ERROR_USAGE for a bad set) name the file, a JSON pointer, what is wrong and the remedy. */
+/* sf_scene_load, sf_scene_parse, sf_scene_destroy, sf_scene_describe: sfumato.h. Errors (SF_ERROR_SCENE; SF_ERROR_IO
+ * when the scene file itself cannot be read; SF_ERROR_USAGE for a bad set) name the file, a JSON pointer, what is wrong
+ * and the remedy. */
 
 /* The camera at a moment (fixed, orbit, keyframes resolved). */
 struct sf_camera_pose {
     float eye[3], target[3], up[3], fov, near_clip;
 };
 void sf_scene_camera(const struct sf_scene *scene, double time, struct sf_camera_pose *pose);
-/* Where an emitter is at a moment of the simulation's clock, and its velocity (zero before the path's first key and after its last). */
+/* Where an emitter is at a moment of the simulation's clock, and its velocity (zero before the path's first key and
+ * after its last). */
 void sf_scene_emitter_at(const struct sf_emitter *emitter, double time, float position[3], float velocity[3]);
 
 /* Radiance of the environment seen along a unit vector: what is drawn behind the scene when it is visible. */

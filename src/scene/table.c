@@ -20,8 +20,9 @@ static const struct sf_param ramp_rows[] = {
     {ROW_COLOR("color", struct sf_ramp_key, color, 1, 1, 1, 1, "", "what the medium's albedo is multiplied by"),
      .required = true},
 };
-static const struct sf_param_group ramp_group = GROUP(
-    "ramp", struct sf_ramp_key, ramp_rows, "A colour at a moment of a particle's life; linear between, constant outside.");
+static const struct sf_param_group ramp_group =
+    GROUP("ramp", struct sf_ramp_key, ramp_rows,
+          "A colour at a moment of a particle's life; linear between, constant outside.");
 
 static const char *const environment_kinds[] = {"sky", "color", "latlong", "cube", NULL};
 static const struct sf_param environment_rows[] = {
@@ -38,8 +39,13 @@ static const struct sf_param environment_rows[] = {
      .only_for = "color", .rebuild = SF_REBUILD_ASSETS},
     {ROW_STRING("file", struct sf_environment, file, "EXR, HDR or PNG, twice as wide as high, -z in its middle"),
      .only_for = "latlong", .required = true, .rebuild = SF_REBUILD_ASSETS},
-    {.key = "files", .type = SF_PARAM_FILES, .offset = SF_OFFSET(struct sf_environment, files, sf_param_files),
-     .unit = "", .doc = "EXR, HDR or PNG squares: +x, -x, +y, -y, +z, -z", .only_for = "cube", .required = true,
+    {.key = "files",
+     .type = SF_PARAM_FILES,
+     .offset = SF_OFFSET(struct sf_environment, files, sf_param_files),
+     .unit = "",
+     .doc = "EXR, HDR or PNG squares: +x, -x, +y, -y, +z, -z",
+     .only_for = "cube",
+     .required = true,
      .rebuild = SF_REBUILD_ASSETS},
     {ROW_FLOAT("intensity", struct sf_environment, intensity, 1, 0, 1e4, "", "multiplies its radiance"),
      .rebuild = SF_REBUILD_ASSETS},
@@ -54,7 +60,8 @@ static const struct sf_param_group environment_group =
           "Light from all around: it gives the ambient light, and the background.");
 
 static const struct sf_param sim_rows[] = {
-    {ROW_INT("seed", struct sf_sim_settings, seed, 1, 0, INT32_MAX, "", "of all randomness: the same seed, the same bits"),
+    {ROW_INT("seed", struct sf_sim_settings, seed, 1, 0, INT32_MAX, "",
+             "of all randomness: the same seed, the same bits"),
      .rebuild = SF_REBUILD_SIM},
     {ROW_INT("capacity", struct sf_sim_settings, capacity, 4096, 1, SF_PARTICLES_MAX, "particles",
              "live particles at most; what is emitted beyond is lost"),
@@ -97,23 +104,30 @@ static const struct sf_param thick_rows[] = {
     {ROW_ENUM("resolution", struct sf_thick_settings, resolution, resolutions, SF_RESOLUTION_HALF,
               "of the smoke's passes, against the frame's"),
      .rebuild = SF_REBUILD_GRAPH},
-    {ROW_INT("steps", struct sf_thick_settings, steps, 12, 1, 256, "", "samples along the camera's ray through the smoke")},
-    {ROW_FLOAT("blur", struct sf_thick_settings, blur, 4, 0, 38, "px", "sigma of the camera view's blur, in pixels of the frame"),
+    {ROW_INT("steps", struct sf_thick_settings, steps, 12, 1, 256, "",
+             "samples along the camera's ray through the smoke")},
+    {ROW_FLOAT("blur", struct sf_thick_settings, blur, 4, 0, 38, "px",
+               "sigma of the camera view's blur, in pixels of the frame"),
      .rebuild = SF_REBUILD_GRAPH},
     {ROW_INT("octaves", struct sf_thick_settings, octaves, 1, 1, 4, "",
              "of multiple scattering; 1: single scattering, as the reference computes it"),
      .rebuild = SF_REBUILD_GRAPH},
-    {ROW_INT("light_size", struct sf_thick_settings, light_size, 256, 16, 4096, "px", "side of the light's view of the smoke, per light"),
+    {ROW_INT("light_size", struct sf_thick_settings, light_size, 256, 16, 4096, "px",
+             "side of the light's view of the smoke, per light"),
      .rebuild = SF_REBUILD_GRAPH},
-    {ROW_FLOAT("light_blur", struct sf_thick_settings, light_blur, 2, 0, 9.5, "px", "sigma of the light view's blur, in its own pixels"),
+    {ROW_FLOAT("light_blur", struct sf_thick_settings, light_blur, 2, 0, 9.5, "px",
+               "sigma of the light view's blur, in its own pixels"),
      .rebuild = SF_REBUILD_GRAPH},
-    {ROW_FLOAT("detail", struct sf_thick_settings, detail, 0.5, 0, 1, "", "how much of the density the atlas modulates"),
+    {ROW_FLOAT("detail", struct sf_thick_settings, detail, 0.5, 0, 1, "",
+               "how much of the density the atlas modulates"),
      .rebuild = SF_REBUILD_GRAPH},
-    {ROW_FLOAT("detail_scale", struct sf_thick_settings, detail_scale, 1, 0.05, 64, "", "tiles of the atlas across a particle")},
+    {ROW_FLOAT("detail_scale", struct sf_thick_settings, detail_scale, 1, 0.05, 64, "",
+               "tiles of the atlas across a particle")},
     {ROW_FLOAT("density_blur", struct sf_thick_settings, density_blur, 0, 0, 1, "",
                "0: exact optical depth; 1: the blurred one of the thesis; between: a mix")},
-    {ROW_FLOAT("ambient", struct sf_thick_settings, ambient, 1, 0, 100, "", "multiplies the environment's light in the smoke")},
-    {ROW_FLOAT("thin", struct sf_thick_settings, thin, 0.5, 0, 100, "",
+    {ROW_FLOAT("ambient", struct sf_thick_settings, ambient, 1, 0, 100, "",
+               "multiplies the environment's light in the smoke")},
+    {ROW_FLOAT("thin", struct sf_thick_settings, thin, 1, 0, 100, "",
                "optical depth across a particle below which its surfaces recede from the depth views; 0: never")},
     {ROW_FLOAT("soft", struct sf_thick_settings, soft, 0, 0, 100, "m",
                "extra fade of the smoke towards surfaces; 0: none, the smoke is cut there exactly")},
@@ -127,7 +141,7 @@ static const struct sf_param thick_rows[] = {
 static const struct sf_param_group thick_group =
     GROUP("thick", struct sf_thick_settings, thick_rows, "The method thick: thick smoke with volumetric lighting.");
 
-#define ROW_OBJECT(k, f, of, text)                                                                                      \
+#define ROW_OBJECT(k, f, of, text)                                                                                     \
     .key = k, .type = SF_PARAM_OBJECT, .offset = offsetof(struct sf_scene, f), .group = &of, .unit = "", .doc = text
 
 static const char *const methods[] = {"none", "thick", NULL};
@@ -154,4 +168,5 @@ static const struct sf_param scene_rows[] = {
     {ROW_OBJECT("shadow", shadow, shadow_group, "shadows of objects")},
     {ROW_OBJECT("thick", thick, thick_group, "the method thick")},
 };
-const struct sf_param_group sf_scene_group = GROUP("scene", struct sf_scene, scene_rows, "The outermost object of a scene file.");
+const struct sf_param_group sf_scene_group =
+    GROUP("scene", struct sf_scene, scene_rows, "The outermost object of a scene file.");

@@ -4,7 +4,8 @@
 
 #include "params/params.h"
 
-/* The whole file: struct sf_scene. Its object rows (camera, medium, environment, sim, output, shadow, thick) are reached by
+/* The whole file: struct sf_scene. Its object rows (camera, medium, environment, sim, output, shadow, thick) are
+ * reached by
  * --set GROUP.KEY=VALUE, its list rows by --set LIST.INDEX.KEY=VALUE. */
 extern const struct sf_param_group sf_scene_group;
 
