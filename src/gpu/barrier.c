@@ -1,7 +1,8 @@
-/* The one table: access x kind of pass -> pipeline stages, memory accesses, image layout. Nothing else in sfumato names a stage.
+/* The one table: access x kind of pass -> pipeline stages, memory accesses, image layout. Nothing else in sfumato names
+ * a stage.
  *
- * Shader accesses happen in the shader stages of the pass's kind; a raster pass may make them in its vertex or its fragment shader.
- * Everything else has one stage of its own, whatever the pass. */
+ * Shader accesses happen in the shader stages of the pass's kind; a raster pass may make them in its vertex or its
+ * fragment shader. Everything else has one stage of its own, whatever the pass. */
 #include "gpu/vk.h"
 
 static const struct {
@@ -16,8 +17,8 @@ static const struct {
     [SF_ACCESS_STORAGE_WRITE] = {true, 0, 0, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT},
     [SF_ACCESS_STORAGE_MODIFY] = {true, 0, VK_ACCESS_2_SHADER_STORAGE_READ_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT},
     [SF_ACCESS_INDIRECT] = {false, VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT, VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT, 0},
-    [SF_ACCESS_COLOR] = {false, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
-                         VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT},
+    [SF_ACCESS_COLOR] = {false, VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT,
+                         VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT},
     [SF_ACCESS_DEPTH] = {false,
                          VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT,
                          VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT, VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT},

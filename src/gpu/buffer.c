@@ -44,8 +44,8 @@ enum sf_status sf_vk_buffer_init(struct sf_gpu *gpu, const char *name, uint64_t 
     if (status)
         return status;
     buffer->bytes = bytes;
-    status = sf_vk_check(gpu, gpu->vk.vkCreateBuffer(gpu->device, &info, NULL, &buffer->handle), "create the buffer",
-                         name);
+    status =
+        sf_vk_check(gpu, gpu->vk.vkCreateBuffer(gpu->device, &info, NULL, &buffer->handle), "create the buffer", name);
     if (status)
         return status;
     sf_vk_name(gpu, VK_OBJECT_TYPE_BUFFER, SF_VK_HANDLE(buffer->handle), name);
@@ -115,8 +115,7 @@ static enum sf_status check_range(const struct sf_gpu_buffer *buffer, uint64_t o
 
     if (offset <= size && bytes <= size - offset)
         return SF_OK;
-    return sf_fail(buffer->gpu->log, SF_ERROR_USAGE,
-                   "bytes %llu to %llu are asked of the buffer '%s', which has %llu",
+    return sf_fail(buffer->gpu->log, SF_ERROR_USAGE, "bytes %llu to %llu are asked of the buffer '%s', which has %llu",
                    (unsigned long long)offset, (unsigned long long)(offset + bytes), buffer->name,
                    (unsigned long long)size);
 }
@@ -133,8 +132,8 @@ enum sf_status sf_gpu_buffer_write(struct sf_gpu_buffer *buffer, uint64_t offset
         return status;
     status = sf_gpu_wait_idle(gpu);
     if (!status)
-        status = sf_vk_buffer_init(gpu, buffer->name, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, SF_MEMORY_UPLOAD, NULL, 0,
-                                   &staging);
+        status = sf_vk_buffer_init(gpu, buffer->name, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, SF_MEMORY_UPLOAD, NULL,
+                                   0, &staging);
     if (!status) {
         memcpy(staging.place.mapped, data, bytes);
         status = sf_setup_begin(gpu, buffer->name, &commands);

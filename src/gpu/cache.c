@@ -1,7 +1,8 @@
 /* The pipeline cache on disk: what the driver compiled last time.
  *
- * The file is a header of ours (magic, size and checksum of the rest), then the driver's own data, which begins with Vulkan's header: the
- * driver's identity. A file that fails either check is ignored with a warning, and written anew at the end. */
+ * The file is a header of ours (magic, size and checksum of the rest), then the driver's own data, which begins with
+ * Vulkan's header: the driver's identity. A file that fails either check is ignored with a warning, and written anew at
+ * the end. */
 #include "gpu/vk.h"
 
 #include <stdio.h>

@@ -1,4 +1,5 @@
-/* Descriptor pools of a frame in flight: each play takes all its sets in one call; the frame's next beginning takes everything back. */
+/* Descriptor pools of a frame in flight: each play takes all its sets in one call; the frame's next beginning takes
+ * everything back. */
 #include "gpu/vk.h"
 
 #include <stdlib.h>
@@ -89,7 +90,8 @@ enum sf_status sf_descriptor_alloc(struct sf_gpu *gpu, struct sf_descriptor_pool
         take(&pools->pools[i].left, need);
     }
     info.descriptorPool = pools->pools[i].handle;
-    return sf_vk_check(gpu, gpu->vk.vkAllocateDescriptorSets(gpu->device, &info, sets), "allocate descriptors for", name);
+    return sf_vk_check(gpu, gpu->vk.vkAllocateDescriptorSets(gpu->device, &info, sets), "allocate descriptors for",
+                       name);
 }
 
 enum sf_status sf_descriptor_reset(struct sf_gpu *gpu, struct sf_descriptor_pools *pools)

@@ -36,8 +36,8 @@ static enum sf_status create_instance(struct sf_gpu *gpu)
         .pfnUserCallback = on_message,
         .pUserData = gpu,
     };
-    enum sf_status status =
-        sf_instance_create(gpu->validate, gpu->validate ? &messenger : NULL, gpu->log, &gpu->instance, &gpu->debug_utils);
+    enum sf_status status = sf_instance_create(gpu->validate, gpu->validate ? &messenger : NULL, gpu->log,
+                                               &gpu->instance, &gpu->debug_utils);
 
     if (status || !gpu->validate)
         return status;
@@ -65,7 +65,8 @@ static bool has_extension(VkPhysicalDevice physical, const char *name)
 
 static enum sf_status create_device(struct sf_gpu *gpu)
 {
-    /* Needed: sf_physical_describe has seen that they are there. Those of 1.3 that every driver must have stand beside them. */
+    /* Needed: sf_physical_describe has seen that they are there. Those of 1.3 that every driver must have stand beside
+     * them. */
     VkPhysicalDeviceVulkan13Features f13 = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
         .dynamicRendering = VK_TRUE,
@@ -110,8 +111,8 @@ static enum sf_status create_device(struct sf_gpu *gpu)
     features.features.shaderInt64 = has.shaderInt64;
     gpu->features = features.features;
     gpu->tuning.int64 = has.shaderInt64;
-    status = sf_vk_check(gpu, vkCreateDevice(gpu->physical, &info, NULL, &gpu->device), "create the device",
-                         gpu->info.name);
+    status =
+        sf_vk_check(gpu, vkCreateDevice(gpu->physical, &info, NULL, &gpu->device), "create the device", gpu->info.name);
     if (status)
         return status;
     volkLoadDeviceTable(&gpu->vk, gpu->device);
@@ -150,7 +151,9 @@ static void read_limits(struct sf_gpu *gpu)
         .software = software,
         .subgroup_size = gpu->info.subgroup_size ? gpu->info.subgroup_size : 1,
         /* Vulkan does not tell how many compute units there are: enough to fill any, not too many for the small. */
-        .workers = software ? sf_cpu_count() : discrete ? 1024 : 128,
+        .workers = software   ? sf_cpu_count()
+                   : discrete ? 1024
+                              : 128,
         .max_group_invocations = gpu->limits.maxComputeWorkGroupInvocations,
         .shared_bytes = gpu->limits.maxComputeSharedMemorySize,
     };

@@ -1,12 +1,14 @@
-/* The shim for fault tests: see fault.h. It stands between sfumato and the driver only when a test armed it before the device was made. */
+/* The shim for fault tests: see fault.h. It stands between sfumato and the driver only when a test armed it before the
+ * device was made. */
 #include "gpu/fault.h"
 #include "gpu/vk.h"
 
 static struct VolkDeviceTable real;
 static enum sf_fault armed;
 static bool wrapping;
-static uint32_t calls, first_failing;
-static int64_t alive;
+static uint32_t first_failing;
+static atomic_uint calls;
+static _Atomic int64_t alive;
 
 void sf_gpu_fail_after(enum sf_fault fault, uint32_t n)
 {
@@ -28,7 +30,7 @@ int64_t sf_gpu_fault_alive(void)
 
 static bool due(enum sf_fault fault)
 {
-    return armed == fault && ++calls >= first_failing;
+    return armed == fault && atomic_fetch_add(&calls, 1) + 1 >= first_failing;
 }
 
 static VkResult made(VkResult result)

@@ -1,5 +1,5 @@
-/* For tests: makes Vulkan calls fail from the Nth on, by a shim in the device's dispatch table. (Failing through VkAllocationCallbacks
- * crashes inside some drivers.) */
+/* For tests: makes Vulkan calls fail from the Nth on, by a shim in the device's dispatch table. (Failing through
+ * VkAllocationCallbacks crashes inside some drivers.) */
 #ifndef SF_GPU_FAULT_H
 #define SF_GPU_FAULT_H
 
@@ -13,8 +13,8 @@ enum sf_fault {
     SF_FAULT_SUBMIT,  /* vkQueueSubmit2: device lost */
     SF_FAULT_TIMEOUT, /* vkWaitSemaphores: not done in time */
 };
-/* From call number `n` (from 1) of that kind on, calls fail; SF_FAULT_NONE ends it. Set it before sf_gpu_create, which puts the shim in;
- * one device at a time. Not thread safe. */
+/* From call number `n` (from 1) of that kind on, calls fail; SF_FAULT_NONE ends it. Set it before sf_gpu_create, which
+ * puts the shim in; one device at a time. Not thread safe. */
 void sf_gpu_fail_after(enum sf_fault fault, uint32_t n);
 /* Calls of the armed kind so far, and how many objects made through the shim are alive. */
 uint32_t sf_gpu_fault_calls(void);

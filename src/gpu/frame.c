@@ -1,8 +1,8 @@
 /* Frames in flight, waiting, and commands outside of frames.
  *
- * Frame number s (from 1) uses slot s mod SF_FRAMES_IN_FLIGHT and signals the timeline semaphore with s. Beginning it waits for frame
- * s - SF_FRAMES_IN_FLIGHT, so the slot's command pool, descriptors and uploads are free again. All waits end: after timeout_ns the device
- * counts as lost. */
+ * Frame number s (from 1) uses slot s mod SF_FRAMES_IN_FLIGHT and signals the timeline semaphore with s. Beginning it
+ * waits for frame s - SF_FRAMES_IN_FLIGHT, so the slot's command pool, descriptors and uploads are free again. All
+ * waits end: after timeout_ns the device counts as lost. */
 #include "gpu/vk.h"
 
 #include <string.h>
@@ -58,8 +58,8 @@ enum sf_status sf_frames_init(struct sf_gpu *gpu)
     if (!status)
         status = create_commands(gpu, "setup", &gpu->setup_pool, &gpu->setup_commands);
     for (int i = 0; i < SF_FRAMES_IN_FLIGHT && !status; i++)
-        status = create_commands(gpu, i == 0 ? "even frames" : "odd frames", &gpu->slots[i].pool,
-                                 &gpu->slots[i].commands);
+        status =
+            create_commands(gpu, i == 0 ? "even frames" : "odd frames", &gpu->slots[i].pool, &gpu->slots[i].commands);
     return status;
 }
 
@@ -183,7 +183,8 @@ enum sf_status sf_frame_end(struct sf_gpu *gpu, uint64_t *serial)
     if (!status)
         status = sf_vk_check(gpu, submit(gpu, slot->commands, gpu->timeline, next), "submit", "frame");
     if (status) {
-        /* What was recorded never runs, but the players have taken it for done (histories flipped): there is no way on. */
+        /* What was recorded never runs, but the players have taken it for done (histories flipped): there is no way on.
+         */
         atomic_store(&gpu->lost, status);
         return status;
     }

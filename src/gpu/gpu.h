@@ -11,9 +11,9 @@
 
 struct sf_gpu_info {
     char name[256];
-    char driver[256];      /* driver's name and version */
-    char uuid[37];         /* 8-4-4-4-12 lower-case hexadecimal */
-    char kind[16];         /* "discrete", "integrated", "virtual", "cpu", "other" */
+    char driver[256]; /* driver's name and version */
+    char uuid[37];    /* 8-4-4-4-12 lower-case hexadecimal */
+    char kind[16];    /* "discrete", "integrated", "virtual", "cpu", "other" */
     uint32_t api_major, api_minor, api_patch;
     uint64_t memory_bytes; /* the largest device-local heap */
     uint32_t subgroup_size;
@@ -27,7 +27,8 @@ struct sf_gpu_info {
 enum sf_status sf_gpu_list(const struct sf_log *log, struct sf_gpu_info **infos, uint32_t *count);
 
 struct sf_gpu_options {
-    const char *device;    /* index, UUID, or part of a name (case-insensitive; ambiguous is an error); NULL: discrete, integrated, virtual, cpu */
+    const char *device;    /* index, UUID, or part of a name (case-insensitive; ambiguous is an error); NULL: discrete,
+                              integrated, virtual, cpu */
     bool validate;         /* core and synchronization validation; messages are counted and logged as errors */
     uint64_t budget_bytes; /* device memory that may be allocated; 0: 80% of the device's heap */
     uint64_t timeout_ns;   /* the longest wait for the device; 0: 60 s */
@@ -48,7 +49,7 @@ void sf_gpu_memory(const struct sf_gpu *gpu, uint64_t *used, uint64_t *budget);
 struct sf_gpu_tuning {
     bool software;
     uint32_t subgroup_size;
-    uint32_t workers;  /* workgroups that fill the device: cores on a CPU, many on a GPU */
+    uint32_t workers; /* workgroups that fill the device: cores on a CPU, many on a GPU */
     uint32_t max_group_invocations;
     uint32_t shared_bytes;
     bool int64; /* shaders may have 64-bit integers */
@@ -60,16 +61,19 @@ const struct sf_gpu_tuning *sf_gpu_tuning(const struct sf_gpu *gpu);
 struct sf_gpu_buffer;
 struct sf_gpu_image;
 
-/* `history`: two copies that graphs which write it flip. Contents: `data` (bytes long, or NULL for zeros) in every copy, waits until it is there.
- * `outside` is the access in which graphs find and leave it. */
-enum sf_status sf_gpu_buffer_create(struct sf_gpu *gpu, const char *name, uint64_t bytes, bool history, enum sf_access outside,
-                                    const void *data, struct sf_gpu_buffer **buffer);
-enum sf_status sf_gpu_buffer_write(struct sf_gpu_buffer *buffer, uint64_t offset, const void *data, uint64_t bytes); /* waits for idle; all copies */
-enum sf_status sf_gpu_buffer_read(struct sf_gpu_buffer *buffer, uint64_t offset, void *data, uint64_t bytes);        /* waits for idle; current copy */
+/* `history`: two copies that graphs which write it flip. Contents: `data` (bytes long, or NULL for zeros) in every
+ * copy, waits until it is there. `outside` is the access in which graphs find and leave it. */
+enum sf_status sf_gpu_buffer_create(struct sf_gpu *gpu, const char *name, uint64_t bytes, bool history,
+                                    enum sf_access outside, const void *data, struct sf_gpu_buffer **buffer);
+enum sf_status sf_gpu_buffer_write(struct sf_gpu_buffer *buffer, uint64_t offset, const void *data,
+                                   uint64_t bytes); /* waits for idle; all copies */
+enum sf_status sf_gpu_buffer_read(struct sf_gpu_buffer *buffer, uint64_t offset, void *data,
+                                  uint64_t bytes); /* waits for idle; current copy */
 void sf_gpu_buffer_destroy(struct sf_gpu_buffer **buffer);
 /* `data`: tightly packed rows, layers in order; never NULL. */
-enum sf_status sf_gpu_image_create(struct sf_gpu *gpu, const char *name, enum sf_format format, uint32_t width, uint32_t height,
-                                   uint32_t layers, enum sf_access outside, const void *data, struct sf_gpu_image **image);
+enum sf_status sf_gpu_image_create(struct sf_gpu *gpu, const char *name, enum sf_format format, uint32_t width,
+                                   uint32_t height, uint32_t layers, enum sf_access outside, const void *data,
+                                   struct sf_gpu_image **image);
 void sf_gpu_image_destroy(struct sf_gpu_image **image);
 
 /* ---- playing graphs ---- */
@@ -83,21 +87,26 @@ void sf_player_destroy(struct sf_player **player); /* waits for idle */
 /* Binds imported resources; kept until bound again. */
 void sf_player_bind_buffer(struct sf_player *player, sf_resource resource, struct sf_gpu_buffer *buffer);
 void sf_player_bind_image(struct sf_player *player, sf_resource resource, struct sf_gpu_image *image);
-/* Memory for this play's contents of an UPLOAD buffer (write only; valid until sf_player_play). NULL outside a frame. */
+/* Memory for the next play's contents of an UPLOAD buffer (write only; valid until sf_player_play). Each play wants it
+ * anew, and is refused without when the plan uses the buffer. NULL outside a frame, or when memory is out. */
 void *sf_player_upload(struct sf_player *player, sf_resource resource);
 
-/* A frame: plays recorded in order into one command buffer and submitted together. Up to 2 frames are in flight: begin waits for the older one.
- * Not thread safe: one thread begins, plays and ends. */
+/* A frame: plays recorded in order into one command buffer and submitted together. Up to 2 frames are in flight: begin
+ * waits for the older one. Not thread safe: one thread begins, plays and ends. */
 enum sf_status sf_frame_begin(struct sf_gpu *gpu);
-/* Records the graph. A player may play several times in one frame. */
+/* Records the graph. A player may play several times in one frame. When it fails nothing was recorded, and the frame
+ * may go on. */
 enum sf_status sf_player_play(struct sf_player *player);
-/* Submits; *serial counts frames from 1. */
+/* Submits; *serial (may be NULL) counts frames from 1. When it fails the frame is lost and the device takes no more
+ * work: what the players keep would no longer fit what they recorded. */
 enum sf_status sf_frame_end(struct sf_gpu *gpu, uint64_t *serial);
-/* Waits (at most the timeout) until that frame is done on the device. SF_ERROR_DEVICE_LOST when it is not. Any thread may call it. */
+/* Waits (at most the timeout) until that frame is done on the device. SF_ERROR_DEVICE_LOST when it is not. Any thread
+ * may call it. */
 enum sf_status sf_frame_wait(struct sf_gpu *gpu, uint64_t serial);
 enum sf_status sf_gpu_wait_idle(struct sf_gpu *gpu);
-/* After sf_frame_wait(serial): the last play's contents of a READBACK buffer in that frame. Valid until `keep` (set with
- * sf_player_set_readback_depth, default 2) further frames have played this player. Mapped, host-cached. */
+/* After sf_frame_wait(serial): the last play's contents of a READBACK buffer in that frame. Valid until `keep` (set
+ * with sf_player_set_readback_depth, default 2) further frames have played this player. Mapped, host-cached. NULL when
+ * there are none of that frame. Any thread. */
 const void *sf_player_readback(struct sf_player *player, sf_resource resource, uint64_t serial);
 void sf_player_set_readback_depth(struct sf_player *player, uint32_t frames); /* before the first play */
 
@@ -109,12 +118,16 @@ struct sf_pass_time {
 };
 /* When on, each pass of the player is surrounded by timestamps. Costs some microseconds a pass. */
 void sf_player_set_timing(struct sf_player *player, bool on);
-/* After sf_frame_wait: times of the passes of the last play of the player in that frame, in plan order. SF_ERROR_USAGE when not timed. */
-enum sf_status sf_player_times(struct sf_player *player, uint64_t serial, const struct sf_pass_time **times, uint32_t *count);
+/* After sf_frame_wait: times of the passes of the last play of the player in that frame, in plan order; a pass begins
+ * where the one before ended, so that all add up. Kept as long as readbacks are. SF_ERROR_USAGE when not timed. Any
+ * thread. */
+enum sf_status sf_player_times(struct sf_player *player, uint64_t serial, const struct sf_pass_time **times,
+                               uint32_t *count);
 /* CPU nanoseconds that the last sf_player_play took to record. */
 uint64_t sf_player_record_ns(const struct sf_player *player);
 
-/* For the mutation test: drop barrier number `barrier` (counted over the plan, final barriers last) when recording; UINT32_MAX drops none. */
+/* For the mutation test: drop barrier number `barrier` (counted over the plan, final barriers last) when recording;
+ * UINT32_MAX drops none. */
 void sf_player_drop_barrier(struct sf_player *player, uint32_t barrier);
 
 #endif

@@ -131,13 +131,14 @@ enum sf_status sf_vk_image_init(struct sf_gpu *gpu, const char *name, const VkIm
         home = &image->place;
         offset = 0;
     }
-    status = sf_vk_check(gpu, gpu->vk.vkBindImageMemory(gpu->device, image->handle, home->memory, home->offset + offset),
-                         "bind memory to the image", name);
+    status =
+        sf_vk_check(gpu, gpu->vk.vkBindImageMemory(gpu->device, image->handle, home->memory, home->offset + offset),
+                    "bind memory to the image", name);
     if (status || !(info->usage & viewed))
         return status;
     view.image = image->handle;
-    status = sf_vk_check(gpu, gpu->vk.vkCreateImageView(gpu->device, &view, NULL, &image->view), "create a view of the image",
-                         name);
+    status = sf_vk_check(gpu, gpu->vk.vkCreateImageView(gpu->device, &view, NULL, &image->view),
+                         "create a view of the image", name);
     if (!status)
         sf_vk_name(gpu, VK_OBJECT_TYPE_IMAGE_VIEW, SF_VK_HANDLE(image->view), name);
     return status;
@@ -201,7 +202,8 @@ static enum sf_status image_fill(struct sf_gpu_image *image, const void *data)
         layout_barrier(gpu, commands, vk, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
         gpu->vk.vkCmdCopyBufferToImage(commands, staging.handle, vk->handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
                                        &region);
-        layout_barrier(gpu, commands, vk, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, sf_vk_layout(image->outside, vk->format));
+        layout_barrier(gpu, commands, vk, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                       sf_vk_layout(image->outside, vk->format));
         status = sf_setup_end(gpu, image->name);
     }
     sf_vk_buffer_finish(gpu, &staging);
@@ -224,9 +226,10 @@ enum sf_status sf_gpu_image_create(struct sf_gpu *gpu, const char *name, enum sf
     if (layers == 0)
         layers = 1;
     if (width == 0 || height == 0 || width > side || height > side || layers > most)
-        return sf_fail(gpu->log, SF_ERROR_USAGE,
-                       "the image '%s' cannot be %u x %u pixels in %u layers: this device takes 1 to %u a side, %u layers",
-                       name, width, height, layers, side, most);
+        return sf_fail(
+            gpu->log, SF_ERROR_USAGE,
+            "the image '%s' cannot be %u x %u pixels in %u layers: this device takes 1 to %u a side, %u layers", name,
+            width, height, layers, side, most);
     misfit = sf_vk_image_misfit(gpu, format, usage, false, false);
     if (misfit)
         return sf_fail(gpu->log, SF_ERROR_DEVICE, "the device does not support %s of %s, the format of the image '%s'",

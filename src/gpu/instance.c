@@ -28,27 +28,12 @@ static bool has_layer(const char *name)
     return found;
 }
 
-static bool has_extension(const char *layer, const char *name)
-{
-    VkExtensionProperties *extensions;
-    uint32_t count = 0;
-    bool found = false;
-
-    if (vkEnumerateInstanceExtensionProperties(layer, &count, NULL) != VK_SUCCESS || count == 0)
-        return false;
-    extensions = calloc(count, sizeof *extensions);
-    if (extensions && vkEnumerateInstanceExtensionProperties(layer, &count, extensions) >= VK_SUCCESS)
-        for (uint32_t i = 0; i < count; i++)
-            found = found || strcmp(extensions[i].extensionName, name) == 0;
-    free(extensions);
-    return found;
-}
-
 static enum sf_status create_locked(bool validate, const VkDebugUtilsMessengerCreateInfoEXT *messenger,
                                     const struct sf_log *log, VkInstance *instance, bool *debug_utils)
 {
     static const VkValidationFeatureEnableEXT enables[] = {VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
-    const char *layers[] = {VALIDATION_LAYER}, *extensions[3];
+    const char *layers[] = {VALIDATION_LAYER};
+    const char *extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME};
     VkApplicationInfo application = {
         .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
         .pApplicationName = "sfumato",
@@ -81,18 +66,16 @@ static enum sf_status create_locked(bool validate, const VkDebugUtilsMessengerCr
                            VALIDATION_LAYER);
         info.enabledLayerCount = 1;
         info.pNext = &features;
-        if (has_extension(VALIDATION_LAYER, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME))
-            extensions[info.enabledExtensionCount++] = VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME;
     }
-    *debug_utils = has_extension(NULL, VK_EXT_DEBUG_UTILS_EXTENSION_NAME) ||
-                   (validate && has_extension(VALIDATION_LAYER, VK_EXT_DEBUG_UTILS_EXTENSION_NAME));
-    if (*debug_utils)
-        extensions[info.enabledExtensionCount++] = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
-    if (has_extension(NULL, VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME)) {
-        extensions[info.enabledExtensionCount++] = VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME;
-        info.flags = VK_INSTANCE_CREATE_ENUMERATE_PORTABILITY_BIT_KHR;
+    /* Asking which extensions there are makes the loader open every driver, and close it again: rather ask for them,
+     * and for fewer when it says no. */
+    result = VK_ERROR_EXTENSION_NOT_PRESENT;
+    for (uint32_t count = SF_COUNT(extensions) + 1; count-- > 0 && result == VK_ERROR_EXTENSION_NOT_PRESENT;) {
+        info.enabledExtensionCount = count;
+        info.flags = count == SF_COUNT(extensions) ? VK_INSTANCE_CREATE_ENUMERATE_PORTABILITY_BIT_KHR : 0;
+        *debug_utils = count > 0;
+        result = vkCreateInstance(&info, NULL, instance);
     }
-    result = vkCreateInstance(&info, NULL, instance);
     if (result == VK_ERROR_INCOMPATIBLE_DRIVER)
         return sf_fail(log, SF_ERROR_DEVICE,
                        "no Vulkan driver: install one for your GPU, or the package mesa-vulkan-drivers for the CPU");
@@ -341,8 +324,8 @@ static enum sf_status choose_wanted(const struct sf_gpu_info *infos, uint32_t co
     for (uint32_t i = 0; i < count; i++)
         sf_text_printf(&names, "%s%u: %s", i ? ", " : "", i, infos[i].name);
     if (matches != 1)
-        status = sf_fail(log, SF_ERROR_DEVICE, "%s device called '%s'; there are: %s",
-                         matches ? "more than one" : "no", wanted, names.data ? names.data : "");
+        status = sf_fail(log, SF_ERROR_DEVICE, "%s device called '%s'; there are: %s", matches ? "more than one" : "no",
+                         wanted, names.data ? names.data : "");
     sf_text_finish(&names);
     return status;
 }

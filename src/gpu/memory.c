@@ -1,9 +1,9 @@
 /* Device memory: blocks from the driver, cut into places.
  *
- * A block is one vkAllocateMemory of one memory type, mapped for good when the CPU can see it. Its free spans are kept sorted by offset and
- * merged; a place is taken from the smallest span that holds it. Buffers and images share blocks: alignments and sizes are rounded up to
- * bufferImageGranularity, so neighbours never disturb each other. Blocks that become empty go back to the driver. The budget counts
- * blocks, since these are what the device gives. */
+ * A block is one vkAllocateMemory of one memory type, mapped for good when the CPU can see it. Its free spans are kept
+ * sorted by offset and merged; a place is taken from the smallest span that holds it. Buffers and images share blocks:
+ * alignments and sizes are rounded up to bufferImageGranularity, so neighbours never disturb each other. Blocks that
+ * become empty go back to the driver. The budget counts blocks, since these are what the device gives. */
 #include "gpu/vk.h"
 
 #include <stdlib.h>
@@ -80,7 +80,8 @@ static VkResult block_allocate(struct sf_gpu *gpu, struct sf_block *block, uint6
     return gpu->vk.vkAllocateMemory(gpu->device, &info, NULL, &block->memory);
 }
 
-/* A new block with room for `least` bytes: BLOCK_BYTES where the budget and the device grant it, else just what is needed. */
+/* A new block with room for `least` bytes: BLOCK_BYTES where the budget and the device grant it, else just what is
+ * needed. */
 static enum sf_status block_create(struct sf_gpu *gpu, const char *name, uint32_t type, uint64_t least,
                                    struct sf_block **out)
 {
@@ -99,8 +100,8 @@ static enum sf_status block_create(struct sf_gpu *gpu, const char *name, uint32_
                        (double)least / 1048576, (double)gpu->max_allocation / 1048576);
     if (least > left)
         return sf_fail(gpu->log, SF_ERROR_MEMORY,
-                       "'%s' needs %.1f MiB of device memory more, but %.1f MiB of the budget of %.1f MiB are taken", name,
-                       (double)least / 1048576, (double)memory->used / 1048576, (double)memory->budget / 1048576);
+                       "'%s' needs %.1f MiB of device memory more, but %.1f MiB of the budget of %.1f MiB are taken",
+                       name, (double)least / 1048576, (double)memory->used / 1048576, (double)memory->budget / 1048576);
     if (size > heap / 16)
         size = heap / 16;
     if (size > memory->budget / 8)
@@ -127,10 +128,9 @@ static enum sf_status block_create(struct sf_gpu *gpu, const char *name, uint32_
     }
     status = sf_vk_check(gpu, result, "allocate device memory for", name);
     if (!status && flags & VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT)
-        status = sf_vk_check(gpu,
-                             gpu->vk.vkMapMemory(gpu->device, block->memory, 0, VK_WHOLE_SIZE, 0,
-                                                 (void **)&block->mapped),
-                             "map device memory for", name);
+        status = sf_vk_check(
+            gpu, gpu->vk.vkMapMemory(gpu->device, block->memory, 0, VK_WHOLE_SIZE, 0, (void **)&block->mapped),
+            "map device memory for", name);
     if (!status && !sf_array_reserve((void **)&block->spans, 0, &block->span_capacity, 2, sizeof *block->spans))
         status = sf_fail(gpu->log, SF_ERROR_MEMORY, "no memory to note the device memory of '%s'", name);
     if (status) {

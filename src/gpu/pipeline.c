@@ -1,12 +1,16 @@
 /* Pipelines: made once for each distinct key, kept by the device.
  *
- * Conventions of drawing: projection matrices already turn y down (Vulkan's clip space), so viewports are positive. Front faces are
- * counter-clockwise as one sees them on the screen, which is VK_FRONT_FACE_COUNTER_CLOCKWISE: the minus sign in Vulkan's formula for the
- * area allows for y pointing down. Depth is reversed: 1 near, 0 far, cleared to 0, GREATER_OR_EQUAL. */
+ * Conventions of drawing: projection matrices already turn y down (Vulkan's clip space), so viewports are positive.
+ * Front faces are counter-clockwise as one sees them on the screen, which is VK_FRONT_FACE_COUNTER_CLOCKWISE: the minus
+ * sign in Vulkan's formula for the area allows for y pointing down. Depth is reversed: 1 near, 0 far, cleared to 0,
+ * GREATER_OR_EQUAL. */
 #include "gpu/vk.h"
 
 #include <stdlib.h>
 #include <string.h>
+#include "base/thread.h"
+
+enum { BUILD_THREADS_MAX = 8 };
 
 const struct sf_shader *sf_shader_find(const char *name)
 {
@@ -28,8 +32,10 @@ const struct sf_shader *sf_shader_find(const char *name)
     return NULL;
 }
 
-static enum sf_status create_layouts(struct sf_gpu *gpu, const char *pass, struct sf_pipeline *pipeline)
+static enum sf_status create_layouts(struct sf_pipeline *pipeline)
 {
+    struct sf_gpu *gpu = pipeline->gpu;
+    const char *pass = pipeline->pass;
     const struct sf_pipeline_key *key = &pipeline->key;
     VkDescriptorSetLayoutBinding bindings[SF_PASS_USES_MAX] = {0};
     VkDescriptorSetLayoutCreateInfo set = {
@@ -105,8 +111,8 @@ static VkPipelineColorBlendAttachmentState blend_state(enum sf_blend blend)
         .srcAlphaBlendFactor = blends[blend].source,
         .dstAlphaBlendFactor = blends[blend].target,
         .alphaBlendOp = blends[blend].alpha,
-        .colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT |
-                          VK_COLOR_COMPONENT_A_BIT,
+        .colorWriteMask =
+            VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT,
     };
 }
 
@@ -133,11 +139,12 @@ static VkResult create_graphics(struct sf_gpu *gpu, const VkPipelineShaderStageC
         .pColorAttachmentFormats = key->colors,
         .depthAttachmentFormat = key->depth,
     };
-    VkPipelineVertexInputStateCreateInfo vertices = {
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
+    VkPipelineVertexInputStateCreateInfo vertices = {.sType =
+                                                         VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
     VkPipelineInputAssemblyStateCreateInfo assembly = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
-        .topology = key->raster.triangle_strip ? VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP : VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST,
+        .topology =
+            key->raster.triangle_strip ? VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP : VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST,
     };
     VkPipelineViewportStateCreateInfo viewport = {
         .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
@@ -192,8 +199,10 @@ static VkResult create_graphics(struct sf_gpu *gpu, const VkPipelineShaderStageC
     return gpu->vk.vkCreateGraphicsPipelines(gpu->device, gpu->cache, 1, &info, NULL, &pipeline->handle);
 }
 
-static enum sf_status create_handle(struct sf_gpu *gpu, const char *pass, struct sf_pipeline *pipeline)
+static enum sf_status create_handle(struct sf_pipeline *pipeline)
 {
+    struct sf_gpu *gpu = pipeline->gpu;
+    const char *pass = pipeline->pass;
     const struct sf_pipeline_key *key = &pipeline->key;
     bool compute = key->bind_point == VK_PIPELINE_BIND_POINT_COMPUTE;
     VkSpecializationMapEntry entries[SF_PASS_CONSTANTS_MAX];
@@ -214,7 +223,7 @@ static enum sf_status create_handle(struct sf_gpu *gpu, const char *pass, struct
         entries[i] = (VkSpecializationMapEntry){i, (uint32_t)(i * sizeof key->constants[0]), sizeof key->constants[0]};
     for (uint32_t i = 0; i < stage_count; i++) {
         stages[i].sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-        stages[i].stage = compute ? VK_SHADER_STAGE_COMPUTE_BIT
+        stages[i].stage = compute  ? VK_SHADER_STAGE_COMPUTE_BIT
                           : i == 0 ? VK_SHADER_STAGE_VERTEX_BIT
                                    : VK_SHADER_STAGE_FRAGMENT_BIT;
         stages[i].module = modules[i];
@@ -232,8 +241,8 @@ static enum sf_status create_handle(struct sf_gpu *gpu, const char *pass, struct
             gpu, gpu->vk.vkCreateComputePipelines(gpu->device, gpu->cache, 1, &info, NULL, &pipeline->handle),
             "create the compute pipeline of", pass);
     } else if (!status) {
-        status = sf_vk_check(gpu, create_graphics(gpu, stages, stage_count, pipeline), "create the graphics pipeline of",
-                             pass);
+        status = sf_vk_check(gpu, create_graphics(gpu, stages, stage_count, pipeline),
+                             "create the graphics pipeline of", pass);
     }
     for (uint32_t i = 0; i < 2; i++)
         gpu->vk.vkDestroyShaderModule(gpu->device, modules[i], NULL);
@@ -252,11 +261,10 @@ static void pipeline_destroy(struct sf_gpu *gpu, struct sf_pipeline *pipeline)
     free(pipeline);
 }
 
-enum sf_status sf_pipeline_get(struct sf_gpu *gpu, const char *pass, const struct sf_pipeline_key *key,
-                               struct sf_pipeline **out)
+enum sf_status sf_pipeline_request(struct sf_gpu *gpu, const char *pass, const struct sf_pipeline_key *key,
+                                   struct sf_pipeline **out)
 {
     struct sf_pipeline *pipeline;
-    enum sf_status status;
 
     for (size_t i = 0; i < gpu->pipeline_count; i++)
         if (memcmp(&gpu->pipelines[i]->key, key, sizeof *key) == 0) {
@@ -264,24 +272,62 @@ enum sf_status sf_pipeline_get(struct sf_gpu *gpu, const char *pass, const struc
             return SF_OK;
         }
     pipeline = calloc(1, sizeof *pipeline);
-    if (!pipeline || !sf_array_reserve((void **)&gpu->pipelines, gpu->pipeline_count, &gpu->pipeline_capacity, 1,
-                                       sizeof pipeline)) {
+    if (!pipeline ||
+        !sf_array_reserve((void **)&gpu->pipelines, gpu->pipeline_count, &gpu->pipeline_capacity, 1, sizeof pipeline)) {
         free(pipeline);
         return sf_fail(gpu->log, SF_ERROR_MEMORY, "no memory for the pipeline of the pass '%s'", pass);
     }
     memcpy(&pipeline->key, key, sizeof *key);
+    pipeline->gpu = gpu;
+    pipeline->pass = pass;
     pipeline->stages = key->bind_point == VK_PIPELINE_BIND_POINT_COMPUTE ? VK_SHADER_STAGE_COMPUTE_BIT
                        : key->fragment ? VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT
                                        : VK_SHADER_STAGE_VERTEX_BIT;
-    status = create_layouts(gpu, pass, pipeline);
-    if (!status)
-        status = create_handle(gpu, pass, pipeline);
-    if (status) {
-        pipeline_destroy(gpu, pipeline);
-        return status;
-    }
     gpu->pipelines[gpu->pipeline_count++] = pipeline;
     *out = pipeline;
+    return SF_OK;
+}
+
+static enum sf_status build(void *user)
+{
+    struct sf_pipeline *pipeline = user;
+    enum sf_status status = create_layouts(pipeline);
+
+    return status ? status : create_handle(pipeline);
+}
+
+void sf_pipelines_forget(struct sf_gpu *gpu)
+{
+    while (gpu->pipeline_count > gpu->pipelines_made)
+        pipeline_destroy(gpu, gpu->pipelines[--gpu->pipeline_count]);
+}
+
+enum sf_status sf_pipelines_build(struct sf_gpu *gpu)
+{
+    size_t count = gpu->pipeline_count - gpu->pipelines_made;
+    unsigned threads = sf_cpu_count();
+    struct sf_pool *pool = NULL;
+    enum sf_status status = SF_OK;
+
+    if (threads > count)
+        threads = (unsigned)count;
+    if (threads > BUILD_THREADS_MAX)
+        threads = BUILD_THREADS_MAX;
+    if (threads > 1)
+        status = sf_pool_create(threads, (unsigned)count, &pool);
+    for (size_t i = gpu->pipelines_made; i < gpu->pipeline_count && !status; i++)
+        status = pool ? sf_pool_push(pool, build, gpu->pipelines[i]) : build(gpu->pipelines[i]);
+    if (pool) {
+        enum sf_status last = sf_pool_destroy(&pool);
+
+        status = status ? status : last;
+    }
+    if (status) {
+        sf_pipelines_forget(gpu);
+        return status;
+    }
+    while (gpu->pipelines_made < gpu->pipeline_count)
+        gpu->pipelines[gpu->pipelines_made++]->pass = NULL;
     return SF_OK;
 }
 
@@ -291,5 +337,5 @@ void sf_pipelines_finish(struct sf_gpu *gpu)
         pipeline_destroy(gpu, gpu->pipelines[i]);
     free(gpu->pipelines);
     gpu->pipelines = NULL;
-    gpu->pipeline_count = gpu->pipeline_capacity = 0;
+    gpu->pipeline_count = gpu->pipeline_capacity = gpu->pipelines_made = 0;
 }

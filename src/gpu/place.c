@@ -1,7 +1,8 @@
 /* Gives the resources of a plan their memory.
  *
- * Transients live in one heap, at the places that the plan chose with this device's own sizes (sf_gpu_memory_needs); where a device wants
- * another kind of memory for one of them, that one gets memory of its own, which is always right. All others have memory of their own. */
+ * Transients live in one heap, at the places that the plan chose with this device's own sizes (sf_gpu_memory_needs);
+ * where a device wants another kind of memory for one of them, that one gets memory of its own, which is always right.
+ * All others have memory of their own. */
 #include "gpu/player.h"
 
 #include <stdlib.h>
@@ -17,8 +18,8 @@ static VkImageCreateInfo image_info(const struct sf_plan_resource *resource)
 
     if (resource->lifetime != SF_TRANSIENT)
         usage |= VK_IMAGE_USAGE_TRANSFER_DST_BIT; /* zeros at first */
-    return sf_vk_image_info(resource->format, resource->width, resource->height, resource->layers ? resource->layers : 1,
-                            usage);
+    return sf_vk_image_info(resource->format, resource->width, resource->height,
+                            resource->layers ? resource->layers : 1, usage);
 }
 
 static bool image_fits(const struct sf_gpu *gpu, const struct sf_plan_resource *resource)
@@ -100,11 +101,12 @@ static enum sf_status check_resource(const struct sf_player *player, sf_resource
     const char *misfit;
 
     if (resource->image && !image_fits(gpu, resource))
-        return sf_fail(gpu->log, SF_ERROR_USAGE,
-                       "the image '%s' of '%s' would be %u x %u pixels in %u layers: this device takes 1 to %u a side, %u "
-                       "layers",
-                       resource->name, player->plan->name, resource->width, resource->height, resource->layers,
-                       gpu->limits.maxImageDimension2D, gpu->limits.maxImageArrayLayers);
+        return sf_fail(
+            gpu->log, SF_ERROR_USAGE,
+            "the image '%s' of '%s' would be %u x %u pixels in %u layers: this device takes 1 to %u a side, %u "
+            "layers",
+            resource->name, player->plan->name, resource->width, resource->height, resource->layers,
+            gpu->limits.maxImageDimension2D, gpu->limits.maxImageArrayLayers);
     if (resource->image) {
         misfit = image_misfit(player, number);
         return misfit ? sf_fail(gpu->log, SF_ERROR_DEVICE,
@@ -142,9 +144,10 @@ static enum sf_status make_heap(struct sf_player *player)
         needs = device_needs(player->gpu, resource);
         if (needs.size > resource->size || resource->offset % needs.alignment != 0 ||
             resource->offset + needs.size > plan->heap_bytes)
-            return sf_fail(player->gpu->log, SF_ERROR_INTERNAL,
-                           "the plan '%s' was not compiled with this device's memory needs: '%s' does not fit its place",
-                           plan->name, resource->name);
+            return sf_fail(
+                player->gpu->log, SF_ERROR_INTERNAL,
+                "the plan '%s' was not compiled with this device's memory needs: '%s' does not fit its place",
+                plan->name, resource->name);
         if (needs.alignment > heap.alignment)
             heap.alignment = needs.alignment;
         if (heap.memoryTypeBits & needs.memoryTypeBits)
@@ -194,14 +197,15 @@ enum sf_status sf_player_place_readbacks(struct sf_player *player)
         }
         for (uint32_t slice = 0; slice < player->depth && !status; slice++)
             if (!object->slices[slice].handle)
-                status = sf_vk_buffer_init(player->gpu, resource->name, resource->bytes,
-                                           sf_vk_buffer_usage(resource->usage), SF_MEMORY_READBACK, NULL, 0,
-                                           &object->slices[slice]);
+                status =
+                    sf_vk_buffer_init(player->gpu, resource->name, resource->bytes, sf_vk_buffer_usage(resource->usage),
+                                      SF_MEMORY_READBACK, NULL, 0, &object->slices[slice]);
     }
     return status;
 }
 
-static void zero_image(struct sf_gpu *gpu, VkCommandBuffer commands, const struct sf_vk_image *image, VkImageLayout then)
+static void zero_image(struct sf_gpu *gpu, VkCommandBuffer commands, const struct sf_vk_image *image,
+                       VkImageLayout then)
 {
     VkImageSubresourceRange range = sf_vk_image_range(image->format);
     VkImageMemoryBarrier2 barrier = {
@@ -279,7 +283,8 @@ enum sf_status sf_player_place(struct sf_player *player)
     for (uint32_t i = 0; i < player->object_count && !status; i++) {
         enum sf_lifetime lifetime = plan->resources[i].lifetime;
 
-        if (plan->resources[i].used && (lifetime == SF_TRANSIENT || lifetime == SF_PERSISTENT || lifetime == SF_HISTORY))
+        if (plan->resources[i].used &&
+            (lifetime == SF_TRANSIENT || lifetime == SF_PERSISTENT || lifetime == SF_HISTORY))
             status = make_object(player, &player->objects[i]);
     }
     if (!status)

@@ -1,4 +1,5 @@
-/* Records a play. All that can fail comes first; recording itself only walks arrays, so a frame holds whole plays or none. */
+/* Records a play. All that can fail comes first; recording itself only walks arrays, so a frame holds whole plays or
+ * none. */
 #include "gpu/player.h"
 
 #include <string.h>
@@ -12,7 +13,8 @@ static enum sf_status check_bound(struct sf_player *player, const struct sf_obje
     const char *plan = player->plan->name;
 
     if (resource->image ? !object->bound_image : !object->bound_buffer)
-        return sf_fail(player->gpu->log, SF_ERROR_USAGE, "'%s' is played with nothing bound to '%s'", plan, resource->name);
+        return sf_fail(player->gpu->log, SF_ERROR_USAGE, "'%s' is played with nothing bound to '%s'", plan,
+                       resource->name);
     if (resource->image) {
         const struct sf_vk_image *image = &object->bound_image->image;
         VkImageUsageFlags lacks = sf_vk_image_usage(resource->usage) & ~image->usage;
@@ -26,17 +28,18 @@ static enum sf_status check_bound(struct sf_player *player, const struct sf_obje
                            image->height, image->layers);
         if (lacks || object->bound_image->outside != resource->enters[0])
             return sf_fail(player->gpu->log, SF_ERROR_USAGE,
-                           "the image '%s' was not made for what '%s' does with '%s': it rests as %s", object->bound_image->name,
-                           plan, resource->name, sf_access_name(object->bound_image->outside));
+                           "the image '%s' was not made for what '%s' does with '%s': it rests as %s",
+                           object->bound_image->name, plan, resource->name,
+                           sf_access_name(object->bound_image->outside));
         return SF_OK;
     }
     if (object->bound_buffer->copies[0].bytes < resource->bytes)
-        return sf_fail(player->gpu->log, SF_ERROR_USAGE, "'%s' wants %llu bytes of '%s'; the buffer '%s' has %llu", plan,
-                       (unsigned long long)resource->bytes, resource->name, object->bound_buffer->name,
+        return sf_fail(player->gpu->log, SF_ERROR_USAGE, "'%s' wants %llu bytes of '%s'; the buffer '%s' has %llu",
+                       plan, (unsigned long long)resource->bytes, resource->name, object->bound_buffer->name,
                        (unsigned long long)object->bound_buffer->copies[0].bytes);
     if (object->pair && object->bound_buffer->copy_count < 2)
-        return sf_fail(player->gpu->log, SF_ERROR_USAGE, "'%s' wants '%s' as a history; the buffer '%s' has one copy", plan,
-                       resource->name, object->bound_buffer->name);
+        return sf_fail(player->gpu->log, SF_ERROR_USAGE, "'%s' wants '%s' as a history; the buffer '%s' has one copy",
+                       plan, resource->name, object->bound_buffer->name);
     if (object->bound_buffer->outside != resource->enters[0])
         return sf_fail(player->gpu->log, SF_ERROR_USAGE, "'%s' finds '%s' as %s; the buffer '%s' rests as %s", plan,
                        resource->name, sf_access_name(resource->enters[0]), object->bound_buffer->name,
@@ -124,13 +127,15 @@ static struct sf_slot resolve(const struct sf_object *object, bool previous, uin
     case SF_IMPORTED:
         if (resource->image)
             return slot_of_image(&object->bound_image->image);
-        /* Who writes a pair writes the older copy, and reads the newer as `previous`; who does not write reads the newer. */
+        /* Who writes a pair writes the older copy, and reads the newer as `previous`; who does not write reads the
+         * newer. */
         copy = object->bound_buffer->latest;
         if (object->pair && (previous ? !object->flips : object->flips))
             copy = 1 - copy;
         return slot_of_buffer(&object->bound_buffer->copies[copy]);
     case SF_UPLOAD:
-        return (struct sf_slot){object->upload.buffer, object->upload.offset, resource->bytes, VK_NULL_HANDLE, VK_NULL_HANDLE};
+        return (struct sf_slot){object->upload.buffer, object->upload.offset, resource->bytes, VK_NULL_HANDLE,
+                                VK_NULL_HANDLE};
     case SF_READBACK:
         return slot_of_buffer(&object->slices[slice]);
     case SF_TRANSIENT:
@@ -172,7 +177,9 @@ static void write_descriptors(struct sf_player *player)
 
 /* ---- recording ---- */
 
-/* A discard may hand over memory that another resource used: its writes are made available by a barrier on all memory. */
+/* A discard may hand over memory that another resource used: its writes are made available by a barrier on all memory.
+ * Images wait for reads in the same way: synchronization validation follows a chain of waits only where each covers the
+ * same bytes, and the image in between may have been smaller. */
 static void add_memory_barrier(VkMemoryBarrier2 *memory, const struct sf_scope *before, const struct sf_scope *after)
 {
     memory->srcStageMask |= before->stages;
@@ -201,7 +208,7 @@ static void record_barriers(struct sf_player *player, VkCommandBuffer commands, 
 
         if (number + i == player->dropped)
             continue;
-        if (barrier->discard && before.writes)
+        if (barrier->discard && (before.writes || resource->image))
             add_memory_barrier(&memory, &before, &after);
         if (resource->image) {
             VkImageLayout old = sf_vk_layout(barrier->before[0].access, resource->format);
@@ -234,7 +241,7 @@ static void record_barriers(struct sf_player *player, VkCommandBuffer commands, 
             };
         }
     }
-    dependency.memoryBarrierCount = memory.srcAccessMask ? 1 : 0;
+    dependency.memoryBarrierCount = memory.srcStageMask ? 1 : 0;
     if (dependency.memoryBarrierCount + dependency.bufferMemoryBarrierCount + dependency.imageMemoryBarrierCount > 0)
         player->gpu->vk.vkCmdPipelineBarrier2(commands, &dependency);
 }
@@ -338,7 +345,8 @@ static void record_raster(struct sf_player *player, VkCommandBuffer commands, co
 
 static void record_transfer(struct sf_player *player, VkCommandBuffer commands, const struct sf_step *step)
 {
-    const VkImageLayout source_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, target_layout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+    const VkImageLayout source_layout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                        target_layout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
     struct sf_gpu *gpu = player->gpu;
     const struct sf_use *from = &step->plan->uses[0].use, *to = &step->plan->uses[1].use;
     const struct sf_slot *source = &player->slots[sf_slot_index(from->resource, from->previous)], *target;

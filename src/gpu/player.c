@@ -23,8 +23,7 @@ static void describe_object(const struct sf_plan *plan, sf_resource number, stru
 
     object->resource = resource;
     object->writes = plan_writes(plan, number);
-    object->pair = resource->lifetime == SF_HISTORY ||
-                   (resource->lifetime == SF_IMPORTED && buffer && buffer->history);
+    object->pair = resource->lifetime == SF_HISTORY || (resource->lifetime == SF_IMPORTED && buffer && buffer->history);
     object->flips = object->pair && (resource->lifetime == SF_HISTORY || object->writes);
 }
 
@@ -74,7 +73,8 @@ void sf_player_destroy(struct sf_player **pointer)
     *pointer = NULL;
 }
 
-static struct sf_object *find_object(struct sf_player *player, sf_resource resource, enum sf_lifetime lifetime, bool image)
+static struct sf_object *find_object(struct sf_player *player, sf_resource resource, enum sf_lifetime lifetime,
+                                     bool image)
 {
     struct sf_object *object;
 
@@ -154,13 +154,14 @@ enum sf_status sf_player_times(struct sf_player *player, uint64_t serial, const 
     *times = NULL;
     *count = 0;
     if (player->gpu->timestamp_bits == 0)
-        return sf_fail(player->gpu->log, SF_ERROR_USAGE, "the device keeps no time: the passes of '%s' cannot be timed", name);
+        return sf_fail(player->gpu->log, SF_ERROR_USAGE, "the device keeps no time: the passes of '%s' cannot be timed",
+                       name);
     for (uint32_t i = 0; player->timers && serial && i < player->depth; i++)
         if (player->timers[i].serial == serial)
             timer = &player->timers[i];
     if (!timer)
-        return sf_fail(player->gpu->log, SF_ERROR_USAGE, "'%s' was not timed in frame %llu, or that is too long ago", name,
-                       (unsigned long long)serial);
+        return sf_fail(player->gpu->log, SF_ERROR_USAGE, "'%s' was not timed in frame %llu, or that is too long ago",
+                       name, (unsigned long long)serial);
     status = sf_timer_read(player->gpu, name, timer);
     if (status)
         return status;

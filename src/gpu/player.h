@@ -1,4 +1,5 @@
-/* A plan made real, as the files of the player share it: place.c gives resources memory, step.c prepares the passes, play.c records them. */
+/* A plan made real, as the files of the player share it: place.c gives resources memory, step.c prepares the passes,
+ * play.c records them. */
 #ifndef SF_GPU_PLAYER_H
 #define SF_GPU_PLAYER_H
 
@@ -29,7 +30,7 @@ struct sf_object {
     struct sf_upload upload; /* the next play's slice, good in frame upload_serial only */
     uint64_t upload_serial;
     struct sf_vk_buffer *slices; /* readback: one for each of player->depth frames */
-    uint64_t *serials;           /* the frame that wrote each slice */
+    _Atomic uint64_t *serials;   /* the frame that wrote each slice; other threads look for theirs */
 };
 
 #define SF_NO_SET UINT32_MAX
@@ -54,7 +55,7 @@ struct sf_player {
     struct sf_gpu *gpu;
     const struct sf_plan *plan;
     struct sf_arena arena;
-    struct sf_place heap; /* the transients' */
+    struct sf_place heap;      /* the transients' */
     struct sf_object *objects; /* [resource - 1] */
     uint32_t object_count;
     struct sf_slot *slots; /* [2 * (resource - 1) + previous] */

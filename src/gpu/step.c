@@ -1,4 +1,5 @@
-/* Prepares a plan's passes: pipelines, and all descriptor writes and barriers as arrays that a play only has to fill in. */
+/* Prepares a plan's passes: pipelines, and all descriptor writes and barriers as arrays that a play only has to fill
+ * in. */
 #include "gpu/player.h"
 
 #include <string.h>
@@ -59,16 +60,18 @@ static enum sf_status check_pass(const struct sf_player *player, const struct sf
             differ = differ || desc->raster.blend[use->binding] != desc->raster.blend[0];
     }
     if (pass->width > gpu->limits.maxFramebufferWidth || pass->height > gpu->limits.maxFramebufferHeight)
-        return sf_fail(gpu->log, SF_ERROR_USAGE, "the pass '%s' of '%s' draws %u x %u pixels: this device takes at most %u x %u",
-                       pass->name, player->plan->name, pass->width, pass->height, gpu->limits.maxFramebufferWidth,
+        return sf_fail(gpu->log, SF_ERROR_USAGE,
+                       "the pass '%s' of '%s' draws %u x %u pixels: this device takes at most %u x %u", pass->name,
+                       player->plan->name, pass->width, pass->height, gpu->limits.maxFramebufferWidth,
                        gpu->limits.maxFramebufferHeight);
     if (differ && !gpu->features.independentBlend)
         return sf_fail(gpu->log, SF_ERROR_DEVICE,
                        "the pass '%s' of '%s' blends its attachments in different ways, which this device cannot do",
                        pass->name, player->plan->name);
     if (writes && (!gpu->features.fragmentStoresAndAtomics || !gpu->features.vertexPipelineStoresAndAtomics))
-        return sf_fail(gpu->log, SF_ERROR_DEVICE, "the pass '%s' of '%s' stores while it draws, which this device cannot do",
-                       pass->name, player->plan->name);
+        return sf_fail(gpu->log, SF_ERROR_DEVICE,
+                       "the pass '%s' of '%s' stores while it draws, which this device cannot do", pass->name,
+                       player->plan->name);
     return SF_OK;
 }
 
@@ -97,7 +100,8 @@ static void collect_attachments(const struct sf_player *player, struct sf_step *
 }
 
 /* Bindings in ascending order, so that equal pipelines have equal keys. */
-static void collect_bindings(const struct sf_player *player, const struct sf_plan_pass *pass, struct sf_pipeline_key *key)
+static void collect_bindings(const struct sf_player *player, const struct sf_plan_pass *pass,
+                             struct sf_pipeline_key *key)
 {
     for (uint32_t i = 0; i < pass->use_count; i++) {
         const struct sf_use *use = &pass->uses[i].use;
@@ -126,15 +130,14 @@ static enum sf_status prepare_pipeline(struct sf_player *player, struct sf_step 
         status = find_shader(player, step->plan->name, desc->fragment, &key.fragment);
     if (status)
         return status;
-    key.bind_point =
-        desc->kind == SF_PASS_COMPUTE ? VK_PIPELINE_BIND_POINT_COMPUTE : VK_PIPELINE_BIND_POINT_GRAPHICS;
+    key.bind_point = desc->kind == SF_PASS_COMPUTE ? VK_PIPELINE_BIND_POINT_COMPUTE : VK_PIPELINE_BIND_POINT_GRAPHICS;
     memcpy(key.constants, desc->constants, desc->constant_count * sizeof desc->constants[0]);
     key.constant_count = desc->constant_count;
     key.push_bytes = desc->push_bytes;
     collect_bindings(player, step->plan, &key);
     if (desc->kind == SF_PASS_RASTER)
         collect_attachments(player, step, &key);
-    return sf_pipeline_get(player->gpu, step->plan->name, &key, &step->pipeline);
+    return sf_pipeline_request(player->gpu, step->plan->name, &key, &step->pipeline);
 }
 
 static void prepare_writes(struct sf_player *player, const struct sf_step *step)
@@ -173,7 +176,8 @@ static enum sf_status allocate_arrays(struct sf_player *player)
         if (plan->passes[i].barrier_count > longest)
             longest = plan->passes[i].barrier_count;
     }
-#define ARRAY(field, count) ((player->field = sf_arena_alloc(&player->arena, (count + 1) * sizeof *player->field)) != NULL)
+#define ARRAY(field, count)                                                                                            \
+    ((player->field = sf_arena_alloc(&player->arena, (count + 1) * sizeof *player->field)) != NULL)
     if (!ARRAY(steps, plan->pass_count) || !ARRAY(set_layouts, plan->pass_count) || !ARRAY(sets, plan->pass_count) ||
         !ARRAY(writes, uses) || !ARRAY(vk_writes, uses) || !ARRAY(image_infos, uses) || !ARRAY(buffer_infos, uses) ||
         !ARRAY(image_barriers, longest) || !ARRAY(buffer_barriers, longest))
@@ -204,9 +208,16 @@ enum sf_status sf_player_prepare(struct sf_player *player)
             status = prepare_pipeline(player, step);
         if (!status && step->pipeline->key.binding_count > 0) {
             step->set = player->need.sets++;
-            player->set_layouts[step->set] = step->pipeline->set_layout;
             prepare_writes(player, step);
         }
     }
+    if (status) {
+        sf_pipelines_forget(player->gpu);
+        return status;
+    }
+    status = sf_pipelines_build(player->gpu);
+    for (uint32_t i = 0; i < player->step_count && !status; i++)
+        if (player->steps[i].set != SF_NO_SET)
+            player->set_layouts[player->steps[i].set] = player->steps[i].pipeline->set_layout;
     return status;
 }

@@ -1,5 +1,6 @@
-/* Timestamps: one before the first pass, one after each. So a pass's time is from the end of the one before to its own end, which counts the
- * barriers that it needs as its own; the times of all passes add up to the whole play, and a pass costs one timestamp, not two. */
+/* Timestamps: one before the first pass, one after each. So a pass's time is from the end of the one before to its own
+ * end, which counts the barriers that it needs as its own; the times of all passes add up to the whole play, and a pass
+ * costs one timestamp, not two. */
 #include "gpu/timer.h"
 
 #include <stdlib.h>

@@ -6,8 +6,8 @@
 
 struct sf_timer {
     VkQueryPool pool;
-    uint64_t serial;    /* of the frame that it timed last; 0: none */
-    uint64_t *ticks;    /* one more than there are passes */
+    _Atomic uint64_t serial; /* of the frame that it timed last; 0: none. Other threads look for theirs */
+    uint64_t *ticks;         /* one more than there are passes */
     struct sf_pass_time *times;
     uint32_t passes;
 };

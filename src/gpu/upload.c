@@ -1,5 +1,5 @@
-/* The ring from which UPLOAD buffers get their slices: mapped chunks of a frame in flight, filled from the front, all free again when the
- * frame's turn comes round. Chunks stay, so a steady scene allocates nothing. */
+/* The ring from which UPLOAD buffers get their slices: mapped chunks of a frame in flight, filled from the front, all
+ * free again when the frame's turn comes round. Chunks stay, so a steady scene allocates nothing. */
 #include "gpu/vk.h"
 
 #include <stdlib.h>

@@ -1,7 +1,9 @@
-/* What the files of src/gpu share, and nobody else sees: the device with all that hangs on it, and Vulkan's objects with their memory.
+/* What the files of src/gpu share, and nobody else sees: the device with all that hangs on it, and Vulkan's objects
+ * with their memory.
  *
- * Device functions are called through gpu->vk, the device's own table; only instance functions are volk's globals. Every VkResult goes
- * through sf_vk_check. One thread at a time uses a device; sf_frame_wait, sf_player_readback and sf_player_times may run beside it. */
+ * Device functions are called through gpu->vk, the device's own table; only instance functions are volk's globals.
+ * Every VkResult goes through sf_vk_check. One thread at a time uses a device; sf_frame_wait, sf_player_readback and
+ * sf_player_times may run beside it. */
 #ifndef SF_GPU_VK_H
 #define SF_GPU_VK_H
 
@@ -71,11 +73,13 @@ VkImageUsageFlags sf_vk_image_usage(uint32_t access_bits);
 VkFormat sf_vk_format(enum sf_format format);
 VkImageSubresourceRange sf_vk_image_range(enum sf_format format);
 VkImageSubresourceLayers sf_vk_image_layers(enum sf_format format, uint32_t layers);
-/* The name of a usage for which the device cannot take an image of that format, or NULL when it can. `blended`, `filtered`: is it? */
+/* The name of a usage for which the device cannot take an image of that format, or NULL when it can. `blended`,
+ * `filtered`: is it? */
 const char *sf_vk_image_misfit(const struct sf_gpu *gpu, enum sf_format format, VkImageUsageFlags usage, bool blended,
                                bool filtered);
-enum sf_status sf_vk_image_init(struct sf_gpu *gpu, const char *name, const VkImageCreateInfo *info, enum sf_format format,
-                                const struct sf_place *home, uint64_t offset, struct sf_vk_image *image);
+enum sf_status sf_vk_image_init(struct sf_gpu *gpu, const char *name, const VkImageCreateInfo *info,
+                                enum sf_format format, const struct sf_place *home, uint64_t offset,
+                                struct sf_vk_image *image);
 void sf_vk_image_finish(struct sf_gpu *gpu, struct sf_vk_image *image);
 
 struct sf_gpu_buffer {
@@ -128,10 +132,17 @@ struct sf_pipeline {
     VkPipelineLayout layout;
     VkPipeline handle;
     VkShaderStageFlags stages;
+    struct sf_gpu *gpu;
+    const char *pass; /* that wanted it first: a name for messages, until it is made */
 };
-/* Pipelines are the device's: players that need the same one share it, and a graph that is built anew finds its old ones. */
-enum sf_status sf_pipeline_get(struct sf_gpu *gpu, const char *pass, const struct sf_pipeline_key *key,
-                               struct sf_pipeline **pipeline);
+/* Pipelines are the device's: players that need the same one share it, and a graph that is built anew finds its old
+ * ones. One that was not there before is made by the next sf_pipelines_build, and `pass` must live until then. */
+enum sf_status sf_pipeline_request(struct sf_gpu *gpu, const char *pass, const struct sf_pipeline_key *key,
+                                   struct sf_pipeline **pipeline);
+/* Makes what was requested, on several threads. When one fails, none of the new ones remain. */
+enum sf_status sf_pipelines_build(struct sf_gpu *gpu);
+/* Drops what was requested and not made. */
+void sf_pipelines_forget(struct sf_gpu *gpu);
 void sf_pipelines_finish(struct sf_gpu *gpu);
 enum sf_status sf_cache_open(struct sf_gpu *gpu);
 void sf_cache_close(struct sf_gpu *gpu);
@@ -183,10 +194,11 @@ void sf_frames_finish(struct sf_gpu *gpu);
 struct sf_frame_slot *sf_frame_slot_now(struct sf_gpu *gpu);
 /* The status of the failure after which the device takes no more work; SF_OK while all is well. */
 enum sf_status sf_gpu_refuse_lost(struct sf_gpu *gpu);
-/* Waits for all submitted work before something that it may use is destroyed. When the device does not answer, gpu->stuck is set and
- * objects are left alone rather than pulled from under it. */
+/* Waits for all submitted work before something that it may use is destroyed. When the device does not answer,
+ * gpu->stuck is set and objects are left alone rather than pulled from under it. */
 void sf_gpu_settle(struct sf_gpu *gpu);
-/* Commands outside of frames: begin, record, then submit and wait. Everything written is visible to all later commands. */
+/* Commands outside of frames: begin, record, then submit and wait. Everything written is visible to all later commands.
+ */
 enum sf_status sf_setup_begin(struct sf_gpu *gpu, const char *name, VkCommandBuffer *commands);
 enum sf_status sf_setup_end(struct sf_gpu *gpu, const char *name);
 
@@ -201,7 +213,8 @@ enum sf_status sf_physical_choose(VkInstance instance, const char *wanted, const
 enum sf_status sf_physical_list(VkInstance instance, const struct sf_log *log, VkPhysicalDevice **physicals,
                                 uint32_t *count);
 
-/* The one place where a VkResult becomes a status. A failure is logged as "cannot <doing> '<what>': <why>"; a lost device is remembered. */
+/* The one place where a VkResult becomes a status. A failure is logged as "cannot <doing> '<what>': <why>"; a lost
+ * device is remembered. */
 enum sf_status sf_vk_check(struct sf_gpu *gpu, VkResult result, const char *doing, const char *what);
 enum sf_status sf_vk_fail(const struct sf_log *log, VkResult result, const char *doing, const char *what);
 void sf_vk_name(struct sf_gpu *gpu, VkObjectType type, uint64_t handle, const char *name);
@@ -223,8 +236,8 @@ struct sf_gpu {
     struct sf_gpu_info info;
     struct sf_gpu_tuning tuning;
     VkPhysicalDeviceLimits limits;
-    uint64_t max_allocation; /* bytes of one vkAllocateMemory */
-    uint32_t timestamp_bits; /* valid ones; 0: this queue keeps no time */
+    uint64_t max_allocation;           /* bytes of one vkAllocateMemory */
+    uint32_t timestamp_bits;           /* valid ones; 0: this queue keeps no time */
     VkPhysicalDeviceFeatures features; /* enabled ones */
     VkPhysicalDeviceMemoryProperties memory_types;
     VkFormatFeatureFlags formats[SF_FORMAT_COUNT];
@@ -235,9 +248,10 @@ struct sf_gpu {
     uint64_t cache_hash; /* of the data on disk */
     struct sf_pipeline **pipelines;
     size_t pipeline_count, pipeline_capacity;
+    size_t pipelines_made; /* the others were requested */
 
     struct sf_frame_slot slots[SF_FRAMES_IN_FLIGHT];
-    VkSemaphore timeline; /* holds the serial of the last frame that is done */
+    VkSemaphore timeline;       /* holds the serial of the last frame that is done */
     _Atomic uint64_t submitted; /* serial of the last frame handed to the device */
     uint64_t timeout_ns;
     bool recording;
