@@ -12,10 +12,11 @@ struct sf_particle {
     SF_FLOAT(vx);
     SF_FLOAT(vy);
     SF_FLOAT(vz);
-    SF_FLOAT(extinction); /* 1/m, now: dilution and fades applied. Methods need nothing else of the life but `life` below */
-    SF_FLOAT(age);        /* s */
-    SF_FLOAT(lifetime);   /* s; 0: does not die */
-    SF_FLOAT(rotation);   /* rad, of the atlas tile, now */
+    SF_FLOAT(
+        extinction); /* 1/m, now: dilution and fades applied. Methods need nothing else of the life but `life` below */
+    SF_FLOAT(age);   /* s */
+    SF_FLOAT(lifetime);    /* s; 0: does not die */
+    SF_FLOAT(rotation);    /* rad, of the atlas tile, now */
     SF_FLOAT(temperature); /* K above ambient, now */
     SF_FLOAT(radius0);     /* m at birth */
     SF_FLOAT(extinction0); /* 1/m at birth */
@@ -23,13 +24,13 @@ struct sf_particle {
     SF_UINT(look);         /* bits 0-7 atlas tile, 8-15 emitter, bit 16 still, bit 17 its tile turns clockwise */
 };
 
-/* 96 bytes; at the start of the counts buffer. Bounds are of the spheres, as order-preserving unsigned floats (glsl/lib/order.glsl); with no
- * particle min is 0xffffffff and max 0. */
+/* 96 bytes; at the start of the counts buffer. Bounds are of the spheres, as order-preserving unsigned floats
+ * (glsl/lib/order.glsl); with no particle min is 0xffffffff and max 0. */
 struct sf_particle_counts {
     SF_UINT(live);
     SF_UINT(dropped); /* births refused by the capacity, since the start */
     SF_UINT(capacity);
-    SF_UINT(step); /* fixed steps made */
+    SF_UINT(step);        /* fixed steps made */
     SF_UVEC4(bounds_min); /* xyz, w unused */
     SF_UVEC4(bounds_max);
     SF_UVEC4(draw);     /* VkDrawIndirectCommand of billboards: 4 vertices (strip), live instances, 0, 0 */

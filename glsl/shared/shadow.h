@@ -3,9 +3,9 @@
 #define SF_SHARED_SHADOW_H
 #include "types.h"
 
-/* What a light's cell looks at. The ray of cell point (u, v), -1..1, v down, starts at origin + (perspective ? 0 : u right + v down) and goes along
- * forward + (perspective ? u right + v down : 0); the distance along it, in units of that vector, is the depth t, and the map's depth is
- * d = (t - range.x) range.y, 0..1. */
+/* What a light's cell looks at. The ray of cell point (u, v), -1..1, v down, starts at origin + (perspective ? 0 : u
+ * right + v down) and goes along forward + (perspective ? u right + v down : 0); the distance along it, in units of
+ * that vector, is the depth t, and the map's depth is d = (t - range.x) range.y, 0..1. */
 struct sf_gpu_shadow_cell {
     SF_VEC4(origin);  /* xyz m; w: 1 perspective */
     SF_VEC4(right);   /* xyz; w: half the cell's width in m, or its tangent */
@@ -23,9 +23,9 @@ struct sf_shadow_push {
 
 /* Of a draw of a mesh, for the camera and for the lights. */
 struct sf_mesh_push {
-    SF_UINT(object);       /* in the object list */
+    SF_UINT(object); /* in the object list */
     SF_UINT(first_index);
     SF_UINT(first_vertex);
-    SF_UINT(cells);        /* lights: cells in the map */
+    SF_UINT(cells); /* lights: cells in the map */
 };
 #endif

@@ -1,38 +1,41 @@
-/* What one step of the particle simulation reads, and the scratch between its passes. Filled by src/sim/feed.c, read by glsl/sim. */
+/* What one step of the particle simulation reads, and the scratch between its passes. Filled by src/sim/feed.c, read by
+ * glsl/sim. */
 #ifndef SF_SHARED_SIM_H
 #define SF_SHARED_SIM_H
 #include "frame.h"
 #include "particle.h"
 
-#define SF_SIM_EMITTERS 16
-#define SF_SIM_RECORDS 48 /* an emitter makes at most a burst and a stream, or a list, in a step */
+#define SF_SIM_EMITTERS    16
+#define SF_SIM_RECORDS     48 /* an emitter makes at most a burst and a stream, or a list, in a step */
 #define SF_SIM_TURBULENCES 16
-#define SF_SIM_VORTICES 16
+#define SF_SIM_VORTICES    16
+#define SF_SIM_TOUCHES     40 /* looks at the objects' distances, at most, for one particle in one step */
 
 /* Kinds of emitter, as enum sf_emitter_kind. */
-#define SF_SIM_CONE 0
+#define SF_SIM_CONE   0
 #define SF_SIM_SPHERE 1
-#define SF_SIM_BOX 2
-#define SF_SIM_MESH 3
-#define SF_SIM_LIST 4
+#define SF_SIM_BOX    2
+#define SF_SIM_MESH   3
+#define SF_SIM_LIST   4
 
 /* Bits of sf_particle.look. */
 #define SF_LOOK_EMITTER_SHIFT 8
-#define SF_LOOK_STILL 0x10000u
-#define SF_LOOK_SPIN_BACK 0x20000u /* turns clockwise */
+#define SF_LOOK_STILL         0x10000u
+#define SF_LOOK_SPIN_BACK     0x20000u /* turns clockwise */
 
 /* What a random number of a particle is for: the third argument of sf_random. */
-#define SF_RANDOM_LIFETIME 0u
-#define SF_RANDOM_SPEED 1u
-#define SF_RANDOM_RADIUS 2u
-#define SF_RANDOM_TILE 3u
-#define SF_RANDOM_ROTATION 4u
-#define SF_RANDOM_SPIN 5u
+#define SF_RANDOM_LIFETIME  0u
+#define SF_RANDOM_SPEED     1u
+#define SF_RANDOM_RADIUS    2u
+#define SF_RANDOM_TILE      3u
+#define SF_RANDOM_ROTATION  4u
+#define SF_RANDOM_SPIN      5u
 #define SF_RANDOM_DIRECTION 6u /* and 7 */
-#define SF_RANDOM_PLACE 8u     /* to 10 */
-#define SF_RANDOM_FACE 11u
+#define SF_RANDOM_PLACE     8u /* to 10 */
+#define SF_RANDOM_FACE      11u
 
-/* Births of one emitter in this step. Birth i (from 0) happens at the fraction moment + i interval of the step, kept within 0..1. */
+/* Births of one emitter in this step. Birth i (from 0) happens at the fraction moment + i interval of the step, kept
+ * within 0..1. */
 struct sf_sim_record {
     SF_UINT(first); /* number of its first birth within the step */
     SF_UINT(count);
@@ -45,11 +48,13 @@ struct sf_sim_record {
 
 struct sf_sim_emitter {
     SF_VEC4(direction); /* xyz: unit, or 0 for outward; w: cosine of the cone of directions about it */
-    SF_VEC4(shape);     /* xyz: cone, sphere: radius, -, -; box: half edges; mesh: scale, -, -; w: extinction at birth, 1/m */
-    SF_VEC4(start);     /* lifetime: least, span (s); speed: least, span (m/s) */
-    SF_VEC4(body);      /* radius at birth: least, span (m); temperature, K; cooling, 1/s */
-    SF_VEC4(change);    /* growth, m/s; 3 dilution; fade in; fade out (shares of life) */
-    SF_VEC4(turn);      /* spin, rad/s; over a whole step: exp(-cooling dt), and what buoyancy's K s and K s^2 come to (see motion.glsl) */
+    SF_VEC4(
+        shape); /* xyz: cone, sphere: radius, -, -; box: half edges; mesh: scale, -, -; w: extinction at birth, 1/m */
+    SF_VEC4(start);  /* lifetime: least, span (s); speed: least, span (m/s) */
+    SF_VEC4(body);   /* radius at birth: least, span (m); temperature, K; cooling, 1/s */
+    SF_VEC4(change); /* growth, m/s; 3 dilution; fade in; fade out (shares of life) */
+    SF_VEC4(turn);   /* spin, rad/s; over a whole step: exp(-cooling dt), and what buoyancy's K s and K s^2 come to (see
+                        motion.glsl) */
     SF_UINT(kind);
     SF_UINT(surface);
     SF_UINT(triangles); /* mesh: first element in the buffer of triangles, and how many */
@@ -91,7 +96,8 @@ struct sf_sim_now {
     SF_UINT(spare2);
     SF_VEC4(acceleration); /* xyz: m/s2 */
     SF_VEC4(wind);         /* xyz: m/s */
-    SF_VEC4(motion);       /* over a whole step: exp(-drag dt), and what velocities and accelerations come to (see motion.glsl) */
+    SF_VEC4(
+        motion); /* over a whole step: exp(-drag dt), and what velocities and accelerations come to (see motion.glsl) */
     SF_STRUCT(sf_sim_record) records[SF_SIM_RECORDS];
     SF_STRUCT(sf_sim_emitter) emitters[SF_SIM_EMITTERS];
     SF_STRUCT(sf_sim_turbulence) turbulences[SF_SIM_TURBULENCES];
@@ -99,12 +105,14 @@ struct sf_sim_now {
     SF_STRUCT(sf_gpu_object) objects[SF_FRAME_OBJECTS];
 };
 
-/* The list is cut into as many chunks as there are workgroups, and a chunk into one run of neighbours for each lane: so the survivors keep
- * their order without a scan inside the loop, at any workgroup and subgroup size. Scratch words: */
-#define SF_SIM_SCRATCH_LIVE 0   /* particles before the step */
-#define SF_SIM_SCRATCH_CHUNKS 1 /* survivors of each chunk; then, for each lane of each chunk, survivors of the lanes before it */
+/* The list is cut into as many chunks as there are workgroups, and a chunk into one run of neighbours for each lane: so
+ * the survivors keep their order without a scan inside the loop, at any workgroup and subgroup size. Scratch words: */
+#define SF_SIM_SCRATCH_LIVE 0 /* particles before the step */
+#define SF_SIM_SCRATCH_CHUNKS                                                                                          \
+    1 /* survivors of each chunk; then, for each lane of each chunk, survivors of the lanes before it */
 
-/* A triangle of a mesh emitter, 48 bytes: corner and the upper end of its share of the area (in 2^-32, so that a random word picks it), edges. */
+/* A triangle of a mesh emitter, 48 bytes: corner and the upper end of its share of the area (in 2^-32, so that a random
+ * word picks it), edges. */
 struct sf_sim_triangle {
     SF_FLOAT(x);
     SF_FLOAT(y);

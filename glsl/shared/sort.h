@@ -6,8 +6,7 @@
 #define SF_SORT_BITS   8 /* of a digit */
 #define SF_SORT_DIGITS 256
 #define SF_SORT_PASSES 4 /* digits of a key: an even number, so that ping-pong ends where it began */
-#define SF_SORT_WAYS   4 /* sorted runs that one merge makes into one */
-#define SF_SORT_UNROLL 8 /* pairs a lane handles in one turn of a loop: turns are counted on llvmpipe, see src/sim/sort.c */
+#define SF_SORT_UNROLL 8 /* pairs a lane handles in one turn of a loop; turns are limited, see src/sim/sort.c */
 
 /* One pair is (key, payload), two 32-bit words; keys ascend. */
 struct sf_sort_push {
@@ -16,8 +15,5 @@ struct sf_sort_push {
     SF_UINT(shift);      /* of the digit that this pass sorts by */
     SF_UINT(groups);     /* count, scan, scatter: slices of the list. merge: blocks that the list was cut into */
     SF_UINT(span);       /* merge: blocks in each sorted run that is read */
-    SF_UINT(spare0);
-    SF_UINT(spare1);
-    SF_UINT(spare2);
 };
 #endif

@@ -109,7 +109,7 @@ vec3 touched(vec3 v, vec3 was, float share, vec3 normal, vec2 bounce, out float 
  * narrowly that pushing from one lands in the other, it goes back and stops; a particle born inside such a knot rises out of it. */
 void move_among_objects(inout vec3 x, vec3 way, inout vec3 v, vec3 was)
 {
-    const uint WALK = 10u, PUSH = 16u, RISE = 80u;
+    const uint WALK = 10u, PUSH = 16u;
     vec3 start = x;
     float whole = max(length(way), 1.0e-20);
     uint tries = 0u;
@@ -143,7 +143,7 @@ void move_among_objects(inout vec3 x, vec3 way, inout vec3 v, vec3 was)
             x = tries == PUSH ? start : x + vec3(0.0, 1.5 * max(-d, skin), 0.0);
             v = vec3(0.0);
             way = vec3(0.0);
-            again = tries < RISE;
+            again = tries < SF_SIM_TOUCHES;
         }
     } while (again);
 }

@@ -19,32 +19,29 @@
 
 layout(local_size_x_id = 0) in;
 layout(set = 0, binding = 0, std430) readonly buffer Count { uint counts[]; };
-// Two halves of `capacity` pairs: the list, and room for it.
-layout(set = 0, binding = 1, std430) buffer Pairs { uvec2 pairs[]; };
 #ifdef SORT_INT64
-layout(set = 0, binding = 1, std430) buffer Words { uint64_t words[]; }; // the same, moved in one access
-#define PAIR         uint64_t
-#define PAIR_AT(at)  words[at]
+#define PAIR         uint64_t // moved in one access; the key comes first in memory
 #define KEY_OF(pair) uint(pair)
 #else
 #define PAIR         uvec2
-#define PAIR_AT(at)  pairs[at]
-#define KEY_OF(pair) pair.x
+#define KEY_OF(pair) (pair).x
 #endif
+// Two halves of `capacity` pairs: the list, and room for it.
+layout(set = 0, binding = 1, std430) buffer Pairs { PAIR pairs[]; };
 layout(push_constant) uniform Push { sf_sort_push push; };
 
 #define DIGIT(key)            bitfieldExtract(key, shift, SF_SORT_BITS)
 #define EACH(what)            what(0) what(1) what(2) what(3) what(4) what(5) what(6) what(7)
-#define LOAD_KEY(i)           uint key##i = pairs[at + i].x;
+#define LOAD_KEY(i)           uint key##i = KEY_OF(pairs[at + i]);
 #define COUNT_KEY(i)          places[DIGIT(key##i)]++;
-#define LOAD_PAIR(i)          PAIR pair##i = PAIR_AT(at + i);
+#define LOAD_PAIR(i)          PAIR pair##i = pairs[at + i];
 #define PLACE_PAIR(i)         PLACE(pair##i)
 #define PLACE(pair)                               \
     {                                             \
         uint digit = DIGIT(KEY_OF(pair));         \
         uint place = places[digit];               \
         places[digit] = place + 1u;               \
-        PAIR_AT(place) = pair;                    \
+        pairs[place] = pair;                      \
     }
 
 void main()
@@ -75,7 +72,7 @@ void main()
             EACH(COUNT_KEY)
         }
         for (; at < end; at++)
-            places[DIGIT(pairs[at].x)]++;
+            places[DIGIT(KEY_OF(pairs[at]))]++;
 
         // Counts become places: digits in order, within a digit lanes in order.
         uint base = to + block_begin;
@@ -90,7 +87,7 @@ void main()
             EACH(PLACE_PAIR)
         }
         for (; at < end; at++) {
-            PAIR pair = PAIR_AT(at);
+            PAIR pair = pairs[at];
             PLACE(pair)
         }
         subgroupBarrier();

@@ -1,10 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Merges each four neighbouring sorted runs into one. Every lane makes an equal share of a merged run by itself: it finds where its share begins in each
-// of the four runs, then takes the least of the four next pairs again and again. Stable: equal keys come out in the order of their runs.
+// Merges each four (or two) neighbouring sorted runs into one. Every lane makes an equal share of a merged run by itself: it finds where its share begins
+// in each run, then takes the least of the next pairs again and again. Stable: equal keys come out in the order of their runs.
 #include "shared/sort.h"
 
 layout(local_size_x_id = 0) in;
+layout(constant_id = 1) const uint WAYS = 4u; // runs that are made into one: 2 or 4
 layout(set = 0, binding = 0, std430) readonly buffer Count { uint counts[]; };
 layout(set = 0, binding = 1, std430) readonly buffer Source { uvec2 source[]; };
 layout(set = 0, binding = 2, std430) writeonly buffer Target { uvec2 target[]; };
@@ -69,7 +70,7 @@ uvec4 split(uint rank, uvec4 begin, uvec4 end)
         bool first_over = second ? next.y >= end.y : next.x >= end.x;                                         \
         bool third_over = fourth ? next.w >= end.w : next.z >= end.z;                                         \
         uvec2 left = second ? pair1 : pair0, right = fourth ? pair3 : pair2;                                  \
-        bool upper = first_over || !third_over && right.x < left.x;                                           \
+        bool upper = WAYS > 2u && (first_over || !third_over && right.x < left.x);                            \
         bvec4 taken = bvec4(!upper && !second, !upper && second, upper && !fourth, upper && fourth);          \
         target[at] = upper ? right : left;                                                                    \
         at++;                                                                                                 \
@@ -85,14 +86,14 @@ void main()
 {
     uint count = min(counts[push.count_word], push.capacity);
     uint run = (count + push.groups - 1u) / push.groups * push.span;
-    uint quads = (push.groups + push.span * SF_SORT_WAYS - 1u) / (push.span * SF_SORT_WAYS);
-    uint lanes = gl_NumWorkGroups.x * gl_WorkGroupSize.x / quads; // for each quad; the host sees to it that there is one
-    uint quad = gl_GlobalInvocationID.x / lanes;
-    if (quad >= quads)
+    uint results = (push.groups + push.span * WAYS - 1u) / (push.span * WAYS);
+    uint lanes = gl_NumWorkGroups.x * gl_WorkGroupSize.x / results; // for each; the host sees to it that there is one
+    uint result = gl_GlobalInvocationID.x / lanes;
+    if (result >= results)
         return;
-    uint start = min(count, quad * SF_SORT_WAYS * run);
-    uvec4 begin = min(uvec4(count), start + uvec4(0u, 1u, 2u, 3u) * run);
-    uvec4 end = min(uvec4(count), begin + run);
+    uint start = min(count, result * WAYS * run);
+    uvec4 begin = min(uvec4(count), start + min(uvec4(0u, 1u, 2u, 3u), WAYS) * run);
+    uvec4 end = min(uvec4(count), start + min(uvec4(1u, 2u, 3u, 4u), WAYS) * run);
     uint total = end.w - start, share = (total + lanes - 1u) / lanes;
     uint rank = min(total, gl_GlobalInvocationID.x % lanes * share);
     uint at = start + rank, stop = start + min(total, rank + share), last = count - 1u;

@@ -41,6 +41,8 @@ static const struct sf_option size_options[] = {
     {"aovs", 0, SF_OPTION_FLAG, FIELD(aovs), .doc = "also the smoke alone: light, near, far, depth, transmittance"},
     {.name = NULL}};
 
+/* The default compression, measured: a frame of scenes/plume.json of 800x800 takes one thread 32 ms and 1.03 MB by zip,
+ * 48 ms and 1.13 MB by zips, 35 ms and 1.37 MB by piz, 9 ms and 3.8 MB by rle, 4 ms and 7.7 MB by none. */
 static const struct sf_option capture_options[] = {
     {"output", 'o', SF_OPTION_LIST, FIELD(outputs), .value = "PATTERN",
      .doc = "files, .exr or .png, #### or %04d the frame; repeatable"},
@@ -48,7 +50,7 @@ static const struct sf_option capture_options[] = {
      .doc = "frame numbers, such as 1-100x2,150"},
     {"type", 0, SF_OPTION_WORD, FIELD(type), .value = "TYPE", .initial = "half", .doc = "numbers in EXR files",
      .words = types},
-    {"compression", 0, SF_OPTION_WORD, FIELD(compression), .value = "NAME", .initial = "zips", .doc = "of EXR files",
+    {"compression", 0, SF_OPTION_WORD, FIELD(compression), .value = "NAME", .initial = "zip", .doc = "of EXR files",
      .words = compressions},
     {"tone", 0, SF_OPTION_WORD, FIELD(tone), .value = "NAME", .doc = "mapping for PNG files, not the scene's",
      .words = tones},

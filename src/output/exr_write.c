@@ -65,7 +65,6 @@ static void sink_flush(struct sink *sink)
 {
     if (sink->size > 0 && sink->status == SF_OK)
         sink->status = sf_file_writer_write(sink->writer, sink->data, sink->size, sink->start, sink->log);
-    sink->start += sink->size;
     sink->size = 0;
 }
 
@@ -128,40 +127,68 @@ static void note_error(exr_const_context_t context, exr_result_t code, const cha
         strncat(message_place, message, MESSAGE_BYTES - 1);
 }
 
-static void store_le32(unsigned char *to, uint32_t bits)
+/* Copies 16- or 32-bit words to little-endian order; one loop for each size, so that the compiler has a simple one. */
+static void copy_words16(const unsigned char *from, size_t stride, size_t count, unsigned char *to)
 {
-    for (int i = 0; i < 4; i++)
-        to[i] = (unsigned char)(bits >> 8 * i);
+    for (size_t i = 0; i < count; i++) {
+        uint16_t word;
+
+        memcpy(&word, from + i * stride, sizeof word);
+        to[2 * i] = (unsigned char)word;
+        to[2 * i + 1] = (unsigned char)(word >> 8);
+    }
+}
+
+static void store_le32(unsigned char *to, uint32_t word)
+{
+    to[0] = (unsigned char)word;
+    to[1] = (unsigned char)(word >> 8);
+    to[2] = (unsigned char)(word >> 16);
+    to[3] = (unsigned char)(word >> 24);
+}
+
+static void copy_words32(const unsigned char *from, size_t stride, size_t count, unsigned char *to)
+{
+    for (size_t i = 0; i < count; i++) {
+        uint32_t word;
+
+        memcpy(&word, from + i * stride, sizeof word);
+        store_le32(to + 4 * i, word);
+    }
+}
+
+static void widen_halves(const unsigned char *from, size_t stride, size_t count, unsigned char *to)
+{
+    for (size_t i = 0; i < count; i++) {
+        uint16_t half;
+        uint32_t word;
+        float value;
+
+        memcpy(&half, from + i * stride, sizeof half);
+        value = sf_half_to_float(half);
+        memcpy(&word, &value, sizeof word);
+        store_le32(to + 4 * i, word);
+    }
 }
 
 /* One line of one channel as the file wants it, little-endian at an unaligned place. Returns its end. */
 static unsigned char *pack_row(const struct sf_exr_channel *channel, uint32_t row, uint32_t width, unsigned char *to)
 {
     const unsigned char *from = (const unsigned char *)channel->pixels + (size_t)row * channel->row_stride;
-    uint16_t half;
-    uint32_t bits;
+    size_t stride = channel->pixel_stride;
 
-    if (channel->stored == SF_EXR_HALF && channel->source == SF_EXR_FLOAT) {
-        sf_half_row(from, channel->pixel_stride, width, to);
+    if (channel->stored == SF_EXR_HALF) {
+        if (channel->source == SF_EXR_FLOAT)
+            sf_half_row(from, stride, width, to);
+        else
+            copy_words16(from, stride, width, to);
         return to + (size_t)width * 2;
     }
-    for (uint32_t x = 0; x < width; x++, from += channel->pixel_stride) {
-        if (channel->source == SF_EXR_HALF) {
-            memcpy(&half, from, sizeof half);
-            if (channel->stored == SF_EXR_HALF) {
-                *to++ = (unsigned char)half;
-                *to++ = (unsigned char)(half >> 8);
-                continue;
-            }
-            float value = sf_half_to_float(half);
-            memcpy(&bits, &value, sizeof bits);
-        } else {
-            memcpy(&bits, from, sizeof bits);
-        }
-        store_le32(to, bits);
-        to += 4;
-    }
-    return to;
+    if (channel->source == SF_EXR_FLOAT)
+        copy_words32(from, stride, width, to);
+    else
+        widen_halves(from, stride, width, to);
+    return to + (size_t)width * 4;
 }
 
 static exr_result_t pack_chunk(exr_encode_pipeline_t *pipeline)

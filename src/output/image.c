@@ -88,29 +88,3 @@ void sf_image_finish(struct sf_image *image)
     free(image->pixels);
     *image = (struct sf_image){0};
 }
-
-static bool ends_in(const char *path, const char *ending)
-{
-    size_t length = strlen(path), part = strlen(ending);
-
-    if (length < part)
-        return false;
-    for (size_t i = 0; i < part; i++) {
-        char c = path[length - part + i];
-
-        if (c >= 'A' && c <= 'Z')
-            c = (char)(c - 'A' + 'a');
-        if (c != ending[i])
-            return false;
-    }
-    return true;
-}
-
-enum sf_image_kind sf_image_kind(const char *path)
-{
-    if (ends_in(path, ".exr"))
-        return SF_IMAGE_EXR;
-    if (ends_in(path, ".png"))
-        return SF_IMAGE_PNG;
-    return ends_in(path, ".hdr") || ends_in(path, ".pic") ? SF_IMAGE_HDR : SF_IMAGE_UNKNOWN;
-}

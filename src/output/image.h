@@ -23,10 +23,6 @@ struct sf_image {
 enum sf_status sf_image_read(const char *path, struct sf_image *image, const struct sf_log *log);
 void sf_image_finish(struct sf_image *image);
 
-enum sf_image_kind { SF_IMAGE_UNKNOWN, SF_IMAGE_EXR, SF_IMAGE_PNG, SF_IMAGE_HDR };
-/* By the name's ending: .exr, .png, .hdr or .pic, in any case. */
-enum sf_image_kind sf_image_kind(const char *path);
-
 /* SF_OK when width x height pixels of `floats` floats each are within the limits. */
 enum sf_status sf_image_check_size(const char *name, uint64_t width, uint64_t height, size_t floats,
                                    const struct sf_log *log);

@@ -3,15 +3,15 @@
 #include <string.h>
 #include "params/number.h"
 
-enum { DEFAULT_BYTES = 128 };
-
 static const char *type_name(const struct sf_param *row)
 {
     static const char *const names[] = {
-        [SF_PARAM_BOOL] = "true/false",    [SF_PARAM_INT] = "whole number",   [SF_PARAM_FLOAT] = "number",
-        [SF_PARAM_VEC3] = "three numbers", [SF_PARAM_COLOR] = "colour",       [SF_PARAM_ENUM] = "name",
-        [SF_PARAM_STRING] = "string",      [SF_PARAM_RANGE] = "one or two numbers", [SF_PARAM_FILES] = "six strings",
-        [SF_PARAM_OBJECT] = "object",      [SF_PARAM_LIST] = "list",
+        [SF_PARAM_BOOL] = "true/false",   [SF_PARAM_INT] = "whole number",
+        [SF_PARAM_FLOAT] = "number",      [SF_PARAM_VEC3] = "three numbers",
+        [SF_PARAM_COLOR] = "colour",      [SF_PARAM_ENUM] = "name",
+        [SF_PARAM_STRING] = "string",     [SF_PARAM_RANGE] = "one or two numbers",
+        [SF_PARAM_FILES] = "six strings", [SF_PARAM_OBJECT] = "object",
+        [SF_PARAM_LIST] = "list",
     };
     return names[row->type];
 }
@@ -149,13 +149,19 @@ static void markdown_group(const char *path, const struct sf_param_group *group,
 
 void sf_param_document_markdown(const struct sf_param_group *root, struct sf_text *text)
 {
-    sf_text_append(text,
-                   "# Parameters\n\n"
-                   "Generated from the table of parameters by `sfumato params --format markdown`; edits by hand are lost, and a test "
-                   "compares.\n\n"
-                   "Every key of a scene file, by object. [scene.md](scene.md) says what they mean together. The same names serve\n"
-                   "`--set`, with dots: `--set thick.steps=24`, `--set lights.0.intensity=3`, `--set medium.albedo=0.9,0.9,0.8`.\n"
-                   "`types` are the values of the object's `type` that take the key. `renews` is what a change while running makes\n"
-                   "anew: the frame's graph, the simulation from its beginning, or what was read from files; nothing where empty.\n");
+    static const char *const intro[] = {
+        "# Parameters",
+        "",
+        "Generated from the table of parameters by `sfumato params --format markdown`; a test compares.",
+        "",
+        "Every key of a scene file, by object. [scene.md](scene.md) says what they mean together. The same names",
+        "serve `--set`, with dots: `--set thick.steps=24`, `--set lights.0.intensity=3`,",
+        "`--set medium.albedo=0.9,0.9,0.8`. `types` are the values of the object's `type` that take the key. `renews`",
+        "is what a change while running makes anew: the frame's graph, the simulation from its beginning, or what was",
+        "read from files; nothing where empty.",
+    };
+
+    for (size_t i = 0; i < SF_COUNT(intro); i++)
+        sf_text_printf(text, "%s\n", intro[i]);
     markdown_group("scene", root, text);
 }

@@ -1,4 +1,5 @@
-/* The table of parameters as people and editors read it. All three append to `text` (check text->failed) and depend on nothing but the rows. */
+/* The table of parameters as people and editors read it. All three append to `text` (check text->failed) and depend on
+ * nothing but the rows. */
 #ifndef SF_PARAMS_DOCUMENT_H
 #define SF_PARAMS_DOCUMENT_H
 

@@ -158,20 +158,21 @@ static enum sf_status read_number(struct sf_param_reader *reader, const struct s
                                   double *value)
 {
     char shown[SF_NUMBER_BYTES], range[SF_PARAM_RANGE_BYTES];
+    bool whole;
 
     if (!json_is_number(json))
         return wrong_type(reader, row->type == SF_PARAM_INT ? "a whole number" : "a number", json);
     *value = json_number_value(json);
+    whole = row->type != SF_PARAM_INT || *value == floor(*value);
+    if (whole && sf_param_in_range(row, *value))
+        return SF_OK;
     sf_number_show(*value, shown);
     if (json_is_integer(json))
         snprintf(shown, sizeof shown, "%" JSON_INTEGER_FORMAT, json_integer_value(json));
-    if (row->type == SF_PARAM_INT && *value != floor(*value))
+    if (!whole)
         return sf_param_reader_fail(reader, "%s is not a whole number", shown);
-    if (!sf_param_in_range(row, *value)) {
-        sf_param_range_text(row, range);
-        return sf_param_reader_fail(reader, "%s is out of range: %s", shown, range);
-    }
-    return SF_OK;
+    sf_param_range_text(row, range);
+    return sf_param_reader_fail(reader, "%s is out of range: %s", shown, range);
 }
 
 static enum sf_status read_numbers(struct sf_param_reader *reader, const struct sf_param *row, const json_t *json,
@@ -353,7 +354,8 @@ static enum sf_status check_keys(struct sf_param_reader *reader, const struct sf
     json_t *value;
     size_t n = 0, before;
 
-    json_object_foreach ((json_t *)json, key, value) {
+    json_object_foreach((json_t *)json, key, value)
+    {
         const struct sf_param *row = sf_param_find(group, key);
 
         if ((row && sf_param_applies(group, row, kind)) || strcmp(key, "//") == 0)

@@ -24,25 +24,28 @@ struct sf_param_reader {
     size_t pointer_length;
 };
 
-/* "NAME: POINTER: message" as SF_ERROR_SCENE; or "--set TEXT: POINTER: message" as SF_ERROR_USAGE when a set wrote that value. */
+/* "NAME: POINTER: message" as SF_ERROR_SCENE; or "--set TEXT: POINTER: message" as SF_ERROR_USAGE when a set wrote that
+ * value. */
 enum sf_status sf_param_reader_fail(const struct sf_param_reader *reader, const char *format, ...) SF_PRINTF(2, 3);
 /* The same as a warning about the file. */
 void sf_param_reader_warn(const struct sf_param_reader *reader, const char *format, ...) SF_PRINTF(2, 3);
 /* Makes `pointer` the place that messages name: "/lights/0/direction". */
 void sf_param_reader_at(struct sf_param_reader *reader, const char *format, ...) SF_PRINTF(2, 3);
 
-/* Fills the struct at `object` from a JSON object. Unknown keys, wrong types and values out of range are errors; a missing key gives the row's
- * default, or is an error when the row is required. "//" is a comment in any object, "$schema" a string in the outermost. */
+/* Fills the struct at `object` from a JSON object. Unknown keys, wrong types and values out of range are errors; a
+ * missing key gives the row's default, or is an error when the row is required. "//" is a comment in any object,
+ * "$schema" a string in the outermost. */
 enum sf_status sf_param_read(struct sf_param_reader *reader, const struct sf_param_group *group, const json_t *json,
                              void *object);
 
-/* Applies set->text to the tree whose root is described by `root`, and notes the place in set->pointer. Types and ranges are checked;
- * whether the object at hand takes the key is found by the reading. SF_ERROR_USAGE; SF_ERROR_SCENE when the tree itself is not of the
- * shape that its rows say. */
+/* Applies set->text to the tree whose root is described by `root`, and notes the place in set->pointer. Types and
+ * ranges are checked; whether the object at hand takes the key is found by the reading. SF_ERROR_USAGE; SF_ERROR_SCENE
+ * when the tree itself is not of the shape that its rows say. */
 enum sf_status sf_param_apply_set(struct sf_param_reader *reader, const struct sf_param_group *root, json_t *tree,
                                   struct sf_param_set *set);
 
-/* Copies `text` with everything but printable characters replaced, for messages; cut with "..." when longer than `size` - 1. */
+/* Copies `text` with everything but printable characters replaced, for messages; cut with "..." when longer than `size`
+ * - 1. */
 void sf_param_clean(const char *text, char *buffer, size_t size);
 
 #endif

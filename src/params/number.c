@@ -81,7 +81,8 @@ bool sf_number_parse(const char *text, size_t length, double *value)
     }
     if (at != end)
         return false;
-    /* Both factors are exact doubles, so one operation rounds once (Clinger, "How to read floating point numbers accurately"). */
+    /* Both factors are exact doubles, so one operation rounds once (Clinger, "How to read floating point numbers
+     * accurately"). */
     exponent += scale;
     if (exact && mantissa <= (UINT64_C(1) << 53) && exponent >= -22 && exponent <= 22) {
         double magnitude = exponent < 0 ? (double)mantissa / powers[-exponent] : (double)mantissa * powers[exponent];

@@ -5,8 +5,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Reads the whole of text[0..length): sign, digits with at most one point, exponent. False for anything else (spaces, hexadecimal, nan, inf)
- * and for numbers that do not fit a double. Correctly rounded. */
+/* Reads the whole of text[0..length): sign, digits with at most one point, exponent. False for anything else (spaces,
+ * hexadecimal, nan, inf) and for numbers that do not fit a double. Correctly rounded. */
 bool sf_number_parse(const char *text, size_t length, double *value);
 
 enum { SF_NUMBER_BYTES = 32 };

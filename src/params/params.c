@@ -155,8 +155,8 @@ static enum sf_status parse_enum(const struct sf_param *row, const char *name, c
     }
     near = sf_suggest(text, row->names, n);
     sf_param_names_text(row, &names);
-    sf_fail(log, SF_ERROR_USAGE, "%s: '%.*s' is not one of %s%s%s%s", name, SHOWN_MAX, text, names.failed ? "" : names.data,
-            near ? ", did you mean " : "", near ? near : "", near ? "?" : "");
+    sf_fail(log, SF_ERROR_USAGE, "%s: '%.*s' is not one of %s%s%s%s", name, SHOWN_MAX, text,
+            names.failed ? "" : names.data, near ? ", did you mean " : "", near ? near : "", near ? "?" : "");
     sf_text_finish(&names);
     return SF_ERROR_USAGE;
 }

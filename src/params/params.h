@@ -1,6 +1,7 @@
-/* The one table of parameters. A row says all there is to know of a field: its key, place, type, default, range, unit and meaning. Scene
- * loading, strict validation, --set, the JSON Schema, docs/params.md and later the viewer's sliders are read off the rows. This room is the
- * machinery; the rows themselves stand in scene/table.c, with the structs that they describe. */
+/* The one table of parameters. A row says all there is to know of a field: its key, place, type, default, range, unit
+ * and meaning. Scene loading, strict validation, --set, the JSON Schema, docs/params.md and later the viewer's sliders
+ * are read off the rows. This room is the machinery; the rows themselves stand in scene/table.c, with the structs that
+ * they describe. */
 #ifndef SF_PARAMS_PARAMS_H
 #define SF_PARAMS_PARAMS_H
 
@@ -53,14 +54,14 @@ struct sf_param {
     const struct sf_param_group *group; /* object, list: of what */
     size_t count_offset;                /* list: of the uint32_t that holds the number of elements */
     uint32_t list_min, list_max;        /* list: elements, inclusive */
-    bool list_pointer;                  /* list: the field is a pointer to the elements; else it is an array of list_max */
+    bool list_pointer; /* list: the field is a pointer to the elements; else it is an array of list_max */
 };
 
 /* Evaluates to the offset of field `f` of struct S, and fails to compile unless the field has type T. */
-#define SF_OFFSET(S, f, T) (offsetof(S, f) + _Generic(&((S *)0)->f, T *: 0u))
+#define SF_OFFSET(S, f, T) (offsetof(S, f) + _Generic(&((S *)0)->f, T * : 0u))
 
-/* The rows of one struct. A group whose rows hold an enum named "type" describes objects of several kinds: a row's only_for says which of
- * them take its key, and the field is zero in the others. */
+/* The rows of one struct. A group whose rows hold an enum named "type" describes objects of several kinds: a row's
+ * only_for says which of them take its key, and the field is zero in the others. */
 struct sf_param_group {
     const char *name; /* "thick"; of a list's elements: "light" */
     const char *doc;
@@ -75,11 +76,12 @@ const struct sf_param *sf_param_kind(const struct sf_param_group *group);
 /* Whether objects of this type (an index into the type row's names) take the row's key. */
 bool sf_param_applies(const struct sf_param_group *group, const struct sf_param *row, int32_t kind);
 
-/* Fills the struct: defaults of the group's default type, zero where the type does not take a key; nested objects too; lists empty. */
+/* Fills the struct: defaults of the group's default type, zero where the type does not take a key; nested objects too;
+ * lists empty. */
 void sf_param_defaults(const struct sf_param_group *group, void *object);
-/* Parses text ("24", "true", "0.1,0.2,0.3", an enum's name) into the field, checking type and range. The message of a failure begins with
- * `name` and holds value, range, unit and the nearest word. SF_ERROR_USAGE. A string field points at `text` afterwards. Lists, objects and
- * file sets are refused. */
+/* Parses text ("24", "true", "0.1,0.2,0.3", an enum's name) into the field, checking type and range. The message of a
+ * failure begins with `name` and holds value, range, unit and the nearest word. SF_ERROR_USAGE. A string field points
+ * at `text` afterwards. Lists, objects and file sets are refused. */
 enum sf_status sf_param_parse(const struct sf_param *row, const char *name, const char *text, void *object,
                               const struct sf_log *log);
 /* Appends the value so that parsing gives the same bits; nothing for a NULL string, a list, an object or a file set. */

@@ -67,7 +67,8 @@ static enum sf_status unknown_key(const struct sf_param_reader *reader, const st
     return fail(reader, set, "unknown key ", step, sf_suggest(step, candidates, n));
 }
 
-/* The next step of "lights.0.intensity=3" into `step`; false when it is empty or too long. `*at` moves to the '.' or '='. */
+/* The next step of "lights.0.intensity=3" into `step`; false when it is empty or too long. `*at` moves to the '.' or
+ * '='. */
 static bool next_step(const char **at, char step[STEP_BYTES])
 {
     size_t length = strcspn(*at, ".=");
@@ -150,7 +151,8 @@ enum sf_status sf_param_apply_set(struct sf_param_reader *reader, const struct s
             return sf_fail(reader->log, SF_ERROR_SCENE, "%s: %s%smust be an object", reader->name, set->pointer,
                            used ? ": " : "");
         if (!next_step(&at, step))
-            return fail(reader, set, "expected KEY=VALUE with keys such as thick.steps or lights.0.intensity", "", NULL);
+            return fail(reader, set, "expected KEY=VALUE with keys such as thick.steps or lights.0.intensity", "",
+                        NULL);
         if (!(row = sf_param_find(group, step)))
             return unknown_key(reader, group, set, step);
         snprintf(set->pointer + used, sizeof set->pointer - used, "/%s", row->key);

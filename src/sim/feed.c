@@ -11,7 +11,9 @@ _Static_assert(sizeof(struct sf_sim_turbulence) == 48 && sizeof(struct sf_sim_vo
 _Static_assert(offsetof(struct sf_sim_now, records) == 112, "std140");
 _Static_assert(sizeof(struct sf_sim_now) <= 16384, "the least that every device offers for a uniform block");
 _Static_assert(SF_SIM_EMITTERS == SF_EMITTERS_MAX && SF_SIM_RECORDS >= 2 * SF_EMITTERS_MAX, "every emitter has room");
-_Static_assert(SF_SIM_TURBULENCES >= SF_FORCES_MAX && SF_SIM_VORTICES >= SF_FORCES_MAX && SF_FRAME_OBJECTS >= SF_OBJECTS_MAX, "every force has room");
+_Static_assert(SF_SIM_TURBULENCES >= SF_FORCES_MAX && SF_SIM_VORTICES >= SF_FORCES_MAX &&
+                   SF_FRAME_OBJECTS >= SF_OBJECTS_MAX,
+               "every force has room");
 _Static_assert(SF_SIM_CONE == SF_EMITTER_CONE && SF_SIM_SPHERE == SF_EMITTER_SPHERE && SF_SIM_BOX == SF_EMITTER_BOX &&
                    SF_SIM_MESH == SF_EMITTER_MESH && SF_SIM_LIST == SF_EMITTER_LIST,
                "one numbering");
@@ -23,7 +25,8 @@ double sf_sim_step_rate(const struct sf_scene *scene)
     return (double)scene->sim.fps * scene->sim.substeps;
 }
 
-/* The stream's births so far, not rounded, `steps` after its start. Multiplied before it is divided: whole numbers come out whole. */
+/* The stream's births so far, not rounded, `steps` after its start. Multiplied before it is divided: whole numbers come
+ * out whole. */
 static double stream(const struct sf_emitter *emitter, double step_rate, double steps)
 {
     if (emitter->duration > 0)
@@ -33,7 +36,8 @@ static double stream(const struct sf_emitter *emitter, double step_rate, double 
 
 static uint64_t stream_births(const struct sf_emitter *emitter, double step_rate, uint64_t step)
 {
-    /* The float nearest to a decimal may lie just above it; a millionth of a particle keeps 0.1 s from becoming a step later. */
+    /* The float nearest to a decimal may lie just above it; a millionth of a particle keeps 0.1 s from becoming a step
+     * later. */
     double births = floor(stream(emitter, step_rate, (double)step - emitter->start * step_rate) + 1e-6);
 
     return births > 0 ? (uint64_t)births : 0;
@@ -60,7 +64,8 @@ uint64_t sf_sim_births(const struct sf_scene *scene, const struct sf_emitter *em
     return emitter->kind == SF_EMITTER_LIST ? births : births + stream_births(emitter, step_rate, step);
 }
 
-static void add_record(struct sf_sim_now *now, const struct sf_sim_record *pose, uint64_t births, double moment, double interval)
+static void add_record(struct sf_sim_now *now, const struct sf_sim_record *pose, uint64_t births, double moment,
+                       double interval)
 {
     uint32_t room = now->capacity - now->births;
     uint32_t count = births < room ? (uint32_t)births : room;
@@ -78,7 +83,8 @@ static void add_record(struct sf_sim_now *now, const struct sf_sim_record *pose,
     now->record_count++;
 }
 
-static void feed_births(const struct sf_scene *scene, const struct sf_sim_layout *layout, uint64_t step, struct sf_sim_now *now)
+static void feed_births(const struct sf_scene *scene, const struct sf_sim_layout *layout, uint64_t step,
+                        struct sf_sim_now *now)
 {
     double rate = sf_sim_step_rate(scene);
     uint64_t first_id = 0;
@@ -100,7 +106,8 @@ static void feed_births(const struct sf_scene *scene, const struct sf_sim_layout
         if (!burst_over(emitter, rate, step) && burst_over(emitter, rate, step + 1))
             add_record(now, &pose, burst_births(emitter), start - (double)step, 0);
         if (after > before)
-            add_record(now, &pose, after - before, ((double)before + 1 - began) / emitter->rate * rate, rate / emitter->rate);
+            add_record(now, &pose, after - before, ((double)before + 1 - began) / emitter->rate * rate,
+                       rate / emitter->rate);
     }
     now->first_id = (uint32_t)first_id;
 }
@@ -121,7 +128,8 @@ static double decay_integral_twice(double k, double h)
     return h * h * (z + expm1(-z)) / (z * z);
 }
 
-/* The coefficients c1 and c2 of glsl/sim/motion.glsl: velocity and way that an acceleration exp(-c t) gives under the drag k. */
+/* The coefficients c1 and c2 of glsl/sim/motion.glsl: velocity and way that an acceleration exp(-c t) gives under the
+ * drag k. */
 static void cooling_integrals(double k, double c, double h, double *c1, double *c2)
 {
     double least = fmin(k, c), apart = fabs(k - c);
@@ -132,17 +140,19 @@ static void cooling_integrals(double k, double c, double h, double *c1, double *
     } else { /* their difference is the derivative, taken half-way: integral of t exp(-m t) */
         double z = (least + 0.5 * apart) * h;
 
-        *c2 = h * h * (z < 1e-3 ? 1.0 / 2 - z * (1.0 / 3 - z * (1.0 / 8 - z / 30)) : (-expm1(-z) - z * exp(-z)) / (z * z));
+        *c2 = h * h *
+              (z < 1e-3 ? 1.0 / 2 - z * (1.0 / 3 - z * (1.0 / 8 - z / 30)) : (-expm1(-z) - z * exp(-z)) / (z * z));
     }
 }
 
-static void feed_emitter(const struct sf_scene *scene, const struct sf_sim_layout *layout, uint32_t i, const struct sf_sim_now *now,
-                         struct sf_sim_emitter *to)
+static void feed_emitter(const struct sf_scene *scene, const struct sf_sim_layout *layout, uint32_t i,
+                         const struct sf_sim_now *now, struct sf_sim_emitter *to)
 {
     const struct sf_emitter *from = &scene->emitters[i];
     double h = 1 / sf_sim_step_rate(scene), c1, c2;
-    double reach = sqrt((double)from->direction[0] * from->direction[0] + (double)from->direction[1] * from->direction[1] +
-                        (double)from->direction[2] * from->direction[2]);
+    double reach =
+        sqrt((double)from->direction[0] * from->direction[0] + (double)from->direction[1] * from->direction[1] +
+             (double)from->direction[2] * from->direction[2]);
     bool listed = from->kind == SF_EMITTER_LIST; /* its particles are as stated, and only forces change them */
 
     memset(to, 0, sizeof *to);
@@ -157,7 +167,9 @@ static void feed_emitter(const struct sf_scene *scene, const struct sf_sim_layou
         to->direction[axis] = reach > 0 ? (float)(from->direction[axis] / reach) : 0;
     to->direction[3] = (float)cos(from->angle * PI / 180);
     for (int axis = 0; axis < 3; axis++)
-        to->shape[axis] = from->kind == SF_EMITTER_BOX ? 0.5f * from->size[axis] : from->kind == SF_EMITTER_MESH ? from->scale : from->radius;
+        to->shape[axis] = from->kind == SF_EMITTER_BOX    ? 0.5f * from->size[axis]
+                          : from->kind == SF_EMITTER_MESH ? from->scale
+                                                          : from->radius;
     to->shape[3] = from->extinction >= 0 ? from->extinction : scene->medium.extinction;
     to->start[0] = from->lifetime[0];
     to->start[1] = from->lifetime[1] - from->lifetime[0];
@@ -179,7 +191,8 @@ static void feed_emitter(const struct sf_scene *scene, const struct sf_sim_layou
 
 static void feed_turbulence(const struct sf_force *force, uint32_t seed, double time, struct sf_sim_turbulence *to)
 {
-    /* Quarter turns for each 1/rate of time; both senses, and far apart, so that the corners do not come back, or turn about, together. */
+    /* Quarter turns for each 1/rate of time; both senses, and far apart, so that the corners do not come back, or turn
+     * about, together. */
     static const double speeds[4] = {0.36, -0.71, 1.23, -1.4};
     double power = 0;
 
@@ -199,7 +212,8 @@ static void feed_turbulence(const struct sf_force *force, uint32_t seed, double 
 
 static void feed_vortex(const struct sf_force *force, struct sf_sim_vortex *to)
 {
-    double length = sqrt((double)force->axis[0] * force->axis[0] + (double)force->axis[1] * force->axis[1] + (double)force->axis[2] * force->axis[2]);
+    double length = sqrt((double)force->axis[0] * force->axis[0] + (double)force->axis[1] * force->axis[1] +
+                         (double)force->axis[2] * force->axis[2]);
 
     for (int i = 0; i < 3; i++) {
         to->position[i] = force->position[i];
@@ -234,7 +248,8 @@ static void feed_forces(const struct sf_scene *scene, uint64_t step, struct sf_s
             break;
         case SF_FORCE_TURBULENCE:
             /* Purposes above those of particles (shared/sim.h): one field a force. */
-            feed_turbulence(force, sf_random_u32(now->seed, i, 0x10000u), ((double)step + 0.5) * h, &now->turbulences[now->turbulence_count++]);
+            feed_turbulence(force, sf_random_u32(now->seed, i, 0x10000u), ((double)step + 0.5) * h,
+                            &now->turbulences[now->turbulence_count++]);
             break;
         default:
             feed_vortex(force, &now->vortices[now->vortex_count++]);
@@ -245,11 +260,14 @@ static void feed_forces(const struct sf_scene *scene, uint64_t step, struct sf_s
     now->motion[1] = (float)decay_integral(now->drag, h);
     now->motion[2] = (float)decay_integral_twice(now->drag, h);
     /* What the forces themselves give within two steps is resting, not bouncing. */
-    now->quiet = 0.01f + (float)(2 * h * sqrt((double)now->acceleration[0] * now->acceleration[0] + (double)now->acceleration[1] * now->acceleration[1] +
-                                              (double)now->acceleration[2] * now->acceleration[2]));
+    now->quiet = 0.01f + (float)(2 * h *
+                                 sqrt((double)now->acceleration[0] * now->acceleration[0] +
+                                      (double)now->acceleration[1] * now->acceleration[1] +
+                                      (double)now->acceleration[2] * now->acceleration[2]));
 }
 
-size_t sf_sim_feed(const struct sf_scene *scene, const struct sf_sim_layout *layout, uint64_t step, struct sf_sim_now *now)
+size_t sf_sim_feed(const struct sf_scene *scene, const struct sf_sim_layout *layout, uint64_t step,
+                   struct sf_sim_now *now)
 {
     memset(now, 0, offsetof(struct sf_sim_now, objects));
     now->seed = (uint32_t)scene->sim.seed;

@@ -1,5 +1,5 @@
-/* What a step of the simulation reads, from the scene and the step's number alone: nothing accumulates from step to step, so stepping can
- * resume anywhere and gives the same bits. No GPU. */
+/* What a step of the simulation reads, from the scene and the step's number alone: nothing accumulates from step to
+ * step, so stepping can resume anywhere and gives the same bits. No GPU. */
 #ifndef SF_SIM_FEED_H
 #define SF_SIM_FEED_H
 
@@ -8,12 +8,15 @@
 /* Fixed steps in a second: fps x substeps. */
 double sf_sim_step_rate(const struct sf_scene *scene);
 
-/* Births of an emitter (lists that are there from the beginning included) before step number `step` begins, steps counted from 0: the stream
- * has given floor(rate (t - start)) by the time t; a burst, or a list, is born in the step in which `start` lies. */
+/* Births of an emitter (lists that are there from the beginning included) before step number `step` begins, steps
+ * counted from 0: the stream has given floor(rate (t - start)) by the time t; a burst, or a list, is born in the step
+ * in which `start` lies. */
 uint64_t sf_sim_births(const struct sf_scene *scene, const struct sf_emitter *emitter, uint64_t step);
 
-/* Everything for the step from step/rate to (step+1)/rate. The scene is read anew each time, so that forces and emitters can be changed while it
- * runs. Only the objects that are there are written, at the end of `now`. Returns the bytes to upload. */
-size_t sf_sim_feed(const struct sf_scene *scene, const struct sf_sim_layout *layout, uint64_t step, struct sf_sim_now *now);
+/* Everything for the step from step/rate to (step+1)/rate. The scene is read anew each time, so that forces and
+ * emitters can be changed while it runs. Only the objects that are there are written, at the end of `now`. Returns the
+ * bytes to upload. */
+size_t sf_sim_feed(const struct sf_scene *scene, const struct sf_sim_layout *layout, uint64_t step,
+                   struct sf_sim_now *now);
 
 #endif

@@ -63,7 +63,9 @@ void sf_obstacle_fill(const struct sf_object *from, struct sf_gpu_object *to)
         rows[i][3] = (float)-dot(axes[i], position);
     }
     for (int i = 0; i < 3; i++)
-        to->shape[i] = from->kind == SF_OBJECT_BOX ? 0.5f * from->size[i] : from->kind == SF_OBJECT_PLANE ? 0 : from->radius;
+        to->shape[i] = from->kind == SF_OBJECT_BOX     ? 0.5f * from->size[i]
+                       : from->kind == SF_OBJECT_PLANE ? 0
+                                                       : from->radius;
     if (from->kind == SF_OBJECT_CYLINDER)
         to->shape[1] = 0.5f * from->height;
     to->shape[3] = (float)from->kind;

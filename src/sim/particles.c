@@ -1,5 +1,5 @@
-/* A step is three passes: count (who lives on), step (move them into the other copy of the list, without gaps), emit (append the newborn; skipped when
- * there are none). glsl/shared/sim.h says how the list is cut up between them. */
+/* A step is three passes: count (who lives on), step (move them into the other copy of the list, without gaps), emit
+ * (append the newborn; skipped when there are none). glsl/shared/sim.h says how the list is cut up between them. */
 #include "sim/particles.h"
 
 #include <stdlib.h>
@@ -25,18 +25,49 @@ struct sf_particles {
     sf_resource upload;
 };
 
-/* Workgroups and lanes of the passes over the list. On a software device a workgroup is a task for one of few threads, and a subgroup is one
- * vector: so one subgroup a workgroup, and four tasks a thread to even out the load. */
+/* What of the scene shapes the passes: the lengths of the loops over it, as constants 1 to 4 of the shaders. */
+struct extent {
+    uint32_t turbulences, vortices, objects, emitters;
+};
+
+static struct extent measure(const struct sf_scene *scene)
+{
+    struct extent extent = {.emitters = scene->emitter_count};
+
+    for (uint32_t i = 0; i < scene->force_count; i++) {
+        extent.turbulences += scene->forces[i].kind == SF_FORCE_TURBULENCE;
+        extent.vortices += scene->forces[i].kind == SF_FORCE_VORTEX;
+    }
+    for (uint32_t i = 0; i < scene->object_count; i++)
+        extent.objects += sf_obstacle_collides(&scene->objects[i]);
+    return extent;
+}
+
+/* Workgroups and lanes of the passes over the list. */
 struct shape {
     uint32_t groups, lanes;
 };
 
-static struct shape choose_shape(const struct sf_gpu_tuning *tuning)
+/* On a software device a workgroup is a task for one of few threads, and a subgroup is one vector: so one subgroup a
+ * workgroup, and four tasks a thread to even out the load. But lavapipe leaves every loop once an invocation has gone
+ * round 65,535 times in all its loops together: a lane must not have more particles than that allows at the worst.
+ * Large lists take larger groups, since each adds up the chunks before it. */
+static struct shape choose_shape(const struct sf_scene *scene, const struct sf_gpu_tuning *tuning)
 {
+    const uint32_t rounds = 65535 - 2048; /* less what the rest of a pass goes round */
+    struct extent extent = measure(scene);
     struct shape shape = {tuning->workers, 128};
+    /* Rounds for one particle: octaves, vortices, and looks at all objects. */
+    uint32_t most =
+        2 + 10 * extent.turbulences + extent.vortices + (extent.objects ? SF_SIM_TOUCHES * (1 + extent.objects) : 0);
+    uint32_t capacity = (uint32_t)scene->sim.capacity, room;
 
-    if (tuning->software)
-        shape = (struct shape){4 * tuning->workers, tuning->subgroup_size};
+    if (tuning->software) {
+        shape = (struct shape){4 * tuning->workers, capacity > 1u << 15 ? 64 : tuning->subgroup_size};
+        room = shape.lanes * (rounds / most);
+        if (shape.groups < (capacity + room - 1) / room)
+            shape.groups = (capacity + room - 1) / room;
+    }
     if (shape.lanes > tuning->max_group_invocations)
         shape.lanes = tuning->max_group_invocations;
     return shape;
@@ -58,29 +89,27 @@ static sf_resource import(struct sf_graph *graph, const char *name, uint64_t byt
                                   });
 }
 
-static void declare_passes(const struct sf_scene *scene, struct shape shape, const uint32_t *emit_groups, struct sf_graph *graph)
+static void declare_passes(const struct sf_scene *scene, struct shape shape, const uint32_t *emit_groups,
+                           struct sf_graph *graph)
 {
+    struct extent extent = measure(scene);
+    uint32_t constants[5] = {shape.lanes, extent.turbulences, extent.vortices, extent.objects, extent.emitters};
     struct sf_sim_layout layout;
-    uint32_t constants[5] = {shape.lanes, 0, 0, 0, scene->emitter_count};
 
     sf_sim_layout_fill(scene, &layout);
-    for (uint32_t i = 0; i < scene->force_count; i++) {
-        constants[1] += scene->forces[i].kind == SF_FORCE_TURBULENCE;
-        constants[2] += scene->forces[i].kind == SF_FORCE_VORTEX;
-    }
-    for (uint32_t i = 0; i < scene->object_count; i++)
-        constants[3] += sf_obstacle_collides(&scene->objects[i]);
-
     sf_resource now = sf_graph_buffer(
         graph, &(struct sf_buffer_desc){.name = "sim.now", .lifetime = SF_UPLOAD, .bytes = sizeof(struct sf_sim_now)});
     sf_resource scratch = sf_graph_buffer(
-        graph, &(struct sf_buffer_desc){.name = "sim.scratch",
-                                        .lifetime = SF_TRANSIENT,
-                                        .bytes = 4 * (SF_SIM_SCRATCH_CHUNKS + (uint64_t)shape.groups * (1 + shape.lanes))});
+        graph,
+        &(struct sf_buffer_desc){.name = "sim.scratch",
+                                 .lifetime = SF_TRANSIENT,
+                                 .bytes = 4 * (SF_SIM_SCRATCH_CHUNKS + (uint64_t)shape.groups * (1 + shape.lanes))});
     sf_resource list = import(graph, "particles", (uint64_t)scene->sim.capacity * sizeof(struct sf_particle), true);
     sf_resource counts = import(graph, "particles.counts", sizeof(struct sf_particle_counts), false);
-    sf_resource triangles = import(graph, "sim.triangles", at_least_one(layout.triangle_total) * sizeof(struct sf_sim_triangle), false);
-    sf_resource listed = import(graph, "sim.listed", at_least_one(layout.listed_total) * sizeof(struct sf_particle), false);
+    sf_resource triangles =
+        import(graph, "sim.triangles", at_least_one(layout.triangle_total) * sizeof(struct sf_sim_triangle), false);
+    sf_resource listed =
+        import(graph, "sim.listed", at_least_one(layout.listed_total) * sizeof(struct sf_particle), false);
     const struct sf_use count_uses[] = {
         {.resource = now, .access = SF_ACCESS_UNIFORM, .binding = 0},
         {.resource = list, .access = SF_ACCESS_STORAGE_READ, .binding = 1, .previous = true},
@@ -128,18 +157,18 @@ static void declare_passes(const struct sf_scene *scene, struct shape shape, con
         sf_graph_pass(graph, &pass);
 }
 
-static enum sf_status declare(const struct sf_scene *scene, const struct sf_gpu_tuning *tuning, const uint32_t *emit_groups, const struct sf_log *log,
-                              struct sf_graph **graph)
+static enum sf_status declare(const struct sf_scene *scene, const struct sf_gpu_tuning *tuning,
+                              const uint32_t *emit_groups, const struct sf_log *log, struct sf_graph **graph)
 {
     enum sf_status status = sf_graph_create("sim", log, graph);
 
     if (!status)
-        declare_passes(scene, choose_shape(tuning), emit_groups, *graph);
+        declare_passes(scene, choose_shape(scene, tuning), emit_groups, *graph);
     return status;
 }
 
-enum sf_status sf_particles_declare(const struct sf_scene *scene, const struct sf_gpu_tuning *tuning, const struct sf_log *log,
-                                    struct sf_graph **graph)
+enum sf_status sf_particles_declare(const struct sf_scene *scene, const struct sf_gpu_tuning *tuning,
+                                    const struct sf_log *log, struct sf_graph **graph)
 {
     static const uint32_t no_groups[3];
 
@@ -153,16 +182,19 @@ static enum sf_status check_capacity(const struct sf_particles *particles)
     uint64_t capacity = (uint64_t)scene->sim.capacity, used, budget, most;
 
     if (scene->sim.capacity < 1 || capacity > SF_PARTICLES_MAX)
-        return sf_fail(particles->log, SF_ERROR_SCENE, "%s: /sim/capacity: %d particles; it must be 1 to %d", path, scene->sim.capacity, SF_PARTICLES_MAX);
+        return sf_fail(particles->log, SF_ERROR_SCENE, "%s: /sim/capacity: %d particles; it must be 1 to %d", path,
+                       scene->sim.capacity, SF_PARTICLES_MAX);
     if (particles->layout.first_total > capacity)
-        return sf_fail(particles->log, SF_ERROR_SCENE, "%s: /sim/capacity: %llu particles, but the scene lists %u; raise it to that", path,
+        return sf_fail(particles->log, SF_ERROR_SCENE,
+                       "%s: /sim/capacity: %llu particles, but the scene lists %u; raise it to that", path,
                        (unsigned long long)capacity, particles->layout.first_total);
     sf_gpu_memory(particles->gpu, &used, &budget);
     most = sf_gpu_info(particles->gpu)->max_storage_bytes / sizeof(struct sf_particle);
     if (used < budget && (budget - used) / (2 * sizeof(struct sf_particle)) < most)
         most = (budget - used) / (2 * sizeof(struct sf_particle));
     if (capacity > most)
-        return sf_fail(particles->log, SF_ERROR_SCENE, "%s: /sim/capacity: %llu particles; this device holds %llu at most", path,
+        return sf_fail(particles->log, SF_ERROR_SCENE,
+                       "%s: /sim/capacity: %llu particles; this device holds %llu at most", path,
                        (unsigned long long)capacity, (unsigned long long)most);
     return SF_OK;
 }
@@ -182,10 +214,12 @@ static enum sf_status create_sources(struct sf_particles *particles)
     if (!status)
         status = sf_sim_triangles(particles->scene, particles->log, triangles);
     if (!status)
-        status = sf_gpu_buffer_create(particles->gpu, "sim.triangles", triangle_bytes, false, SF_ACCESS_STORAGE_READ, triangles, &particles->triangles);
+        status = sf_gpu_buffer_create(particles->gpu, "sim.triangles", triangle_bytes, false, SF_ACCESS_STORAGE_READ,
+                                      triangles, &particles->triangles);
     if (!status) {
         sf_sim_listed_particles(particles->scene, listed);
-        status = sf_gpu_buffer_create(particles->gpu, "sim.listed", listed_bytes, false, SF_ACCESS_STORAGE_READ, listed, &particles->listed);
+        status = sf_gpu_buffer_create(particles->gpu, "sim.listed", listed_bytes, false, SF_ACCESS_STORAGE_READ, listed,
+                                      &particles->listed);
     }
     free(triangles);
     free(listed);
@@ -198,10 +232,11 @@ static enum sf_status create_buffers(struct sf_particles *particles)
     enum sf_status status = create_sources(particles);
 
     if (!status)
-        status = sf_gpu_buffer_create(particles->gpu, "particles", bytes, true, SF_ACCESS_STORAGE_READ, NULL, &particles->list);
+        status = sf_gpu_buffer_create(particles->gpu, "particles", bytes, true, SF_ACCESS_STORAGE_READ, NULL,
+                                      &particles->list);
     if (!status)
-        status = sf_gpu_buffer_create(particles->gpu, "particles.counts", sizeof(struct sf_particle_counts), false, SF_ACCESS_STORAGE_READ, NULL,
-                                      &particles->counts);
+        status = sf_gpu_buffer_create(particles->gpu, "particles.counts", sizeof(struct sf_particle_counts), false,
+                                      SF_ACCESS_STORAGE_READ, NULL, &particles->counts);
     return status;
 }
 
@@ -226,7 +261,8 @@ static enum sf_status create_player(struct sf_particles *particles)
     return SF_OK;
 }
 
-enum sf_status sf_particles_create(struct sf_gpu *gpu, const struct sf_scene *scene, const struct sf_log *log, struct sf_particles **out)
+enum sf_status sf_particles_create(struct sf_gpu *gpu, const struct sf_scene *scene, const struct sf_log *log,
+                                   struct sf_particles **out)
 {
     struct sf_particles *particles = calloc(1, sizeof *particles);
     enum sf_status status;
@@ -295,8 +331,10 @@ enum sf_status sf_particles_step(struct sf_particles *particles)
     enum sf_status status;
 
     if (!upload)
-        return sf_fail(particles->log, SF_ERROR_INTERNAL, "the simulation has nowhere to put step %llu; a step is recorded between sf_frame_begin and sf_frame_end",
-                       (unsigned long long)particles->steps);
+        return sf_fail(
+            particles->log, SF_ERROR_INTERNAL,
+            "the simulation has nowhere to put step %llu; a step is recorded between sf_frame_begin and sf_frame_end",
+            (unsigned long long)particles->steps);
     /* Composed in ordinary memory, since mapped memory may be slow to read. */
     bytes = sf_sim_feed(particles->scene, &particles->layout, particles->steps, &particles->now);
     memcpy(upload, &particles->now, bytes);

@@ -1,5 +1,5 @@
-/* The particle simulation: emission, forces, collision, death and compaction, all on the device in fixed steps. Nothing here depends on the
- * order in which atomics land; the same scene gives the same bits. */
+/* The particle simulation: emission, forces, collision, death and compaction, all on the device in fixed steps. Nothing
+ * here depends on the order in which atomics land; the same scene gives the same bits. */
 #ifndef SF_SIM_PARTICLES_H
 #define SF_SIM_PARTICLES_H
 
@@ -7,9 +7,10 @@
 #include "scene/scene.h"
 
 struct sf_particles;
-/* Buffers, graph and player for the scene; uploads explicit lists. The scene must outlive it. SF_ERROR_SCENE when the capacity is more than the device
- * can hold (the message says how much it can). */
-enum sf_status sf_particles_create(struct sf_gpu *gpu, const struct sf_scene *scene, const struct sf_log *log, struct sf_particles **particles);
+/* Buffers, graph and player for the scene; uploads explicit lists. The scene must outlive it. SF_ERROR_SCENE when the
+ * capacity is more than the device can hold (the message says how much it can). */
+enum sf_status sf_particles_create(struct sf_gpu *gpu, const struct sf_scene *scene, const struct sf_log *log,
+                                   struct sf_particles **particles);
 void sf_particles_destroy(struct sf_particles **particles);
 /* Back to time 0: the explicit lists, and nothing else. Waits for idle. */
 enum sf_status sf_particles_reset(struct sf_particles *particles);
@@ -19,7 +20,8 @@ enum sf_status sf_particles_step(struct sf_particles *particles);
 uint64_t sf_particles_steps(const struct sf_particles *particles);
 double sf_particles_dt(const struct sf_particles *particles);
 
-/* The list (a history pair of struct sf_particle) and its struct sf_particle_counts; both rest in SF_ACCESS_STORAGE_READ outside. */
+/* The list (a history pair of struct sf_particle) and its struct sf_particle_counts; both rest in
+ * SF_ACCESS_STORAGE_READ outside. */
 struct sf_gpu_buffer *sf_particles_list(struct sf_particles *particles);
 struct sf_gpu_buffer *sf_particles_counts(struct sf_particles *particles);
 uint32_t sf_particles_capacity(const struct sf_particles *particles);
@@ -27,6 +29,7 @@ uint32_t sf_particles_capacity(const struct sf_particles *particles);
 struct sf_player *sf_particles_player(struct sf_particles *particles);
 const struct sf_plan *sf_particles_plan(const struct sf_particles *particles);
 /* The same plan with no device, for `sfumato graph`; the caller destroys plan, then graph. */
-enum sf_status sf_particles_declare(const struct sf_scene *scene, const struct sf_gpu_tuning *tuning, const struct sf_log *log, struct sf_graph **graph);
+enum sf_status sf_particles_declare(const struct sf_scene *scene, const struct sf_gpu_tuning *tuning,
+                                    const struct sf_log *log, struct sf_graph **graph);
 
 #endif

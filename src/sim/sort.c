@@ -4,17 +4,21 @@
 #include <string.h>
 
 enum {
-    /* llvmpipe ends every loop of a shader for good once all of its loops together have made 65,535 turns. This leaves room for what does
-     * not grow with the list: in a block 4 x 320 for the counters and 4 x 18 for the rests of slices, in a merge at most 32 x 4 x 21 for
-     * finding the splits. */
+    /* llvmpipe ends every loop of a shader for good once all of its loops together have made 65,535 turns. This leaves
+     * room for what does not grow with the list: in a block 4 x 320 for the counters and 4 x 18 for the rests of
+     * slices, in a merge at most 32 x 4 x 21 for finding the splits. */
     TURNS_MAX = 60000,
-    /* Pairs that one lane may have: a block's lane makes two loops over its slice for each digit, a merge's one, by fours. */
+    /* Pairs that one lane may have: a block's lane makes two loops over its slice for each digit, a merge's one, by
+       fours. */
     BLOCK_LANE_MAX = TURNS_MAX / (2 * SF_SORT_PASSES) * SF_SORT_UNROLL,
     MERGE_LANE_MAX = TURNS_MAX * 4,
     SLICE_LOCAL = 256,
     SLICE_ITEMS = 8,
     GROUPS_MAX = 65535,
 };
+
+_Static_assert(sizeof(struct sf_sort_push) == 20, "as GLSL has it");
+_Static_assert(SF_SORT_BITS *SF_SORT_PASSES == 32 && SF_SORT_DIGITS == 1 << SF_SORT_BITS, "digits make up a key");
 
 static uint32_t ceil_div(uint32_t a, uint32_t b)
 {
@@ -43,19 +47,20 @@ static void tune_blocks(const struct sf_gpu_tuning *device, uint32_t capacity, s
 {
     uint32_t lanes = device->subgroup_size;
     uint32_t needed = max_u32(device->workers, ceil_div(capacity, lanes * BLOCK_LANE_MAX));
-    uint32_t quads;
+    uint32_t results;
 
-    /* Merges take four runs at a time, so a power of four leaves no run without partners. */
+    /* As many blocks as merges of `ways` make into one with no run left over. */
+    tuning->ways = needed == 2 ? 2 : 4;
     tuning->groups = 1;
-    while (tuning->groups < needed && tuning->groups < GROUPS_MAX / SF_SORT_WAYS)
-        tuning->groups *= SF_SORT_WAYS;
+    while (tuning->groups < needed && tuning->groups < GROUPS_MAX / tuning->ways)
+        tuning->groups *= tuning->ways;
     tuning->blocks = true;
     tuning->int64 = device->int64;
     tuning->local = lanes;
-    quads = ceil_div(tuning->groups, SF_SORT_WAYS);
+    /* As many lanes for every result of the first merge. */
+    results = ceil_div(tuning->groups, tuning->ways);
     tuning->merge_groups = max_u32(device->workers, ceil_div(capacity, lanes * MERGE_LANE_MAX));
-    /* As many lanes for every quad. */
-    tuning->merge_groups = min_u32(GROUPS_MAX, ceil_div(tuning->merge_groups, quads) * quads);
+    tuning->merge_groups = min_u32(GROUPS_MAX, ceil_div(tuning->merge_groups, results) * results);
 }
 
 static void tune_slices(const struct sf_gpu_tuning *device, uint32_t capacity, struct sf_sort_tuning *tuning)
@@ -93,13 +98,6 @@ uint64_t sf_sort_bytes(const struct sf_sort_tuning *tuning, uint32_t capacity)
     return list_bytes(capacity) * (tuning->blocks ? 2 : 1);
 }
 
-uint64_t sf_sort_extra_bytes(const struct sf_sort_tuning *tuning, uint32_t capacity)
-{
-    if (tuning->blocks)
-        return tuning->groups > 1 ? list_bytes(capacity) : 0;
-    return list_bytes(capacity) + table_bytes(tuning);
-}
-
 /* What declaring needs besides the description. */
 struct declaration {
     struct sf_graph *graph;
@@ -134,8 +132,8 @@ static void add_pass(struct declaration *at, const char *what, const char *shade
                                  .uses = uses,
                                  .use_count = use_count,
                                  .shader = shader,
-                                 .constants = {tuning->local, tuning->items},
-                                 .constant_count = tuning->blocks ? 1 : 2,
+                                 .constants = {tuning->local, tuning->blocks ? tuning->ways : tuning->items},
+                                 .constant_count = 2,
                                  .push = &at->sort->push[push],
                                  .push_bytes = sizeof at->sort->push[push],
                                  .groups = {groups, 1, 1},
@@ -156,7 +154,7 @@ static sf_resource declare_blocks(struct declaration *at)
     add_pass(at, "blocks", tuning->int64 ? "sort/blocks64.comp" : "sort/blocks.comp", uses, 2, tuning->groups, push++);
     if (tuning->groups > 1)
         to = add_buffer(at, "merged", list_bytes(desc->capacity));
-    for (uint32_t span = 1; span < tuning->groups; span *= SF_SORT_WAYS, push++) {
+    for (uint32_t span = 1; span < tuning->groups; span *= tuning->ways, push++) {
         const struct sf_use merge[] = {
             {.resource = desc->count, .access = SF_ACCESS_STORAGE_READ, .binding = 0},
             {.resource = from, .access = SF_ACCESS_STORAGE_READ, .binding = 1},

@@ -14,8 +14,8 @@ uint32_t sf_sort_key(float value)
     return bits > 0x80000000 ? ~bits : size | 0x80000000;
 }
 
-/* Introsort (Musser 1997): quicksort by the median of three down to short ranges, heapsort where it goes too deep, and one insertion sort
- * over the whole in the end. */
+/* Introsort (Musser 1997): quicksort by the median of three down to short ranges, heapsort where it goes too deep, and
+ * one insertion sort over the whole in the end. */
 enum { SHORT_RANGE = 16 };
 
 static void swap_words(uint64_t *a, uint64_t *b)

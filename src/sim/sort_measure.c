@@ -20,9 +20,10 @@ struct bench {
     sf_resource list_in, count_in, out;
     struct sf_sort_tuning tuning;
     struct sf_sort sort;
-    struct sf_sort_pair *input; /* payloads are the pairs' numbers, so that sorting the words below is stable in the keys */
-    uint64_t *sorted;           /* key in the upper half, payload in the lower */
-    uint64_t *gpu_ns, *cpu_ns;  /* [repeats] */
+    struct sf_sort_pair
+        *input;       /* payloads are the pairs' numbers, so that sorting the words below is stable in the keys */
+    uint64_t *sorted; /* key in the upper half, payload in the lower */
+    uint64_t *gpu_ns, *cpu_ns; /* [repeats] */
 };
 
 static enum sf_status make_input(struct bench *bench)
@@ -102,10 +103,9 @@ static enum sf_status open_bench(struct bench *bench)
 
     sf_sort_tune(sf_gpu_tuning(bench->gpu), bench->pairs, &bench->tuning);
     if (sf_sort_bytes(&bench->tuning, bench->pairs) > sf_gpu_info(bench->gpu)->max_storage_bytes)
-        return sf_fail(bench->log, SF_ERROR_USAGE, "sort of %u pairs: the device's largest buffer holds %llu",
-                       bench->pairs,
-                       (unsigned long long)(sf_gpu_info(bench->gpu)->max_storage_bytes /
-                                            sf_sort_bytes(&bench->tuning, 1)));
+        return sf_fail(
+            bench->log, SF_ERROR_USAGE, "sort of %u pairs: the device's largest buffer holds %llu", bench->pairs,
+            (unsigned long long)(sf_gpu_info(bench->gpu)->max_storage_bytes / sf_sort_bytes(&bench->tuning, 1)));
     status = make_input(bench);
     if (!status)
         status = sf_graph_create(NAME, bench->log, &bench->graph);

@@ -34,11 +34,14 @@ void sf_sim_layout_fill(const struct sf_scene *scene, struct sf_sim_layout *layo
 }
 
 /* A listed particle is as stated, bit for bit: no growth, fades or warmth of the emitter's apply to it. */
-static void fill_listed(const struct sf_scene *scene, uint32_t emitter_index, uint32_t i, uint32_t id, struct sf_particle *particle)
+static void fill_listed(const struct sf_scene *scene, uint32_t emitter_index, uint32_t i, uint32_t id,
+                        struct sf_particle *particle)
 {
     const struct sf_emitter *emitter = &scene->emitters[emitter_index];
     const struct sf_listed *from = &emitter->list[i];
-    float extinction = from->extinction >= 0 ? from->extinction : emitter->extinction >= 0 ? emitter->extinction : scene->medium.extinction;
+    float extinction = from->extinction >= 0      ? from->extinction
+                       : emitter->extinction >= 0 ? emitter->extinction
+                                                  : scene->medium.extinction;
 
     *particle = (struct sf_particle){
         .x = from->centre[0],
@@ -73,14 +76,16 @@ static void enclose(const struct sf_particle *particle, struct sf_particle_count
     const float centre[3] = {particle->x, particle->y, particle->z};
 
     for (int i = 0; i < 3; i++) {
-        uint32_t low = order_from_float(centre[i] - particle->radius), high = order_from_float(centre[i] + particle->radius);
+        uint32_t low = order_from_float(centre[i] - particle->radius),
+                 high = order_from_float(centre[i] + particle->radius);
 
         counts->bounds_min[i] = low < counts->bounds_min[i] ? low : counts->bounds_min[i];
         counts->bounds_max[i] = high > counts->bounds_max[i] ? high : counts->bounds_max[i];
     }
 }
 
-void sf_sim_first_particles(const struct sf_scene *scene, struct sf_particle *particles, struct sf_particle_counts *counts)
+void sf_sim_first_particles(const struct sf_scene *scene, struct sf_particle *particles,
+                            struct sf_particle_counts *counts)
 {
     uint32_t live = 0;
 
@@ -109,7 +114,8 @@ void sf_sim_listed_particles(const struct sf_scene *scene, struct sf_particle *p
     for (uint32_t e = 0; e < scene->emitter_count; e++) {
         const struct sf_emitter *emitter = &scene->emitters[e];
 
-        for (uint32_t i = 0; emitter->kind == SF_EMITTER_LIST && !listed_at_first(emitter) && i < emitter->list_count; i++)
+        for (uint32_t i = 0; emitter->kind == SF_EMITTER_LIST && !listed_at_first(emitter) && i < emitter->list_count;
+             i++)
             fill_listed(scene, e, i, 0, &particles[count++]);
     }
 }
@@ -139,7 +145,8 @@ static double fill_triangle(const struct sf_mesh *mesh, const uint32_t *corners,
     return 0.5 * sqrt(area);
 }
 
-enum sf_status sf_sim_triangles(const struct sf_scene *scene, const struct sf_log *log, struct sf_sim_triangle *triangles)
+enum sf_status sf_sim_triangles(const struct sf_scene *scene, const struct sf_log *log,
+                                struct sf_sim_triangle *triangles)
 {
     for (uint32_t e = 0; e < scene->emitter_count; e++) {
         const struct sf_emitter *emitter = &scene->emitters[e];
@@ -152,7 +159,9 @@ enum sf_status sf_sim_triangles(const struct sf_scene *scene, const struct sf_lo
         for (uint32_t i = 0; i < count; i++)
             total += fill_triangle(mesh, &mesh->indices[3 * (size_t)i], &triangles[i]);
         if (!(total > 0) || !isfinite(total))
-            return sf_fail(log, SF_ERROR_SCENE, "%s: /emitters/%u: the mesh '%s' has no surface to emit from; give one with triangles that have an area",
+            return sf_fail(log, SF_ERROR_SCENE,
+                           "%s: /emitters/%u: the mesh '%s' has no surface to emit from; give one with triangles that "
+                           "have an area",
                            scene->path ? scene->path : "scene", e, mesh->file ? mesh->file : "");
         for (uint32_t i = 0; i < count; i++) {
             sum += fill_triangle(mesh, &mesh->indices[3 * (size_t)i], &triangles[i]);
