@@ -15,7 +15,8 @@ void main()
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = textureSize(source, 0);
     if (any(greaterThanEqual(pixel, size)))
         return;
-    ivec2 axis = VERTICAL != 0u ? ivec2(0, 1) : ivec2(1, 0);
+    // Not a ?: of vectors: Mesa 22.3 folds that wrongly for specialization constants, in the first component only.
+    ivec2 axis = ivec2(1 - int(VERTICAL), int(VERTICAL));
     ivec2 low = ivec2(pixel.x / int(push.cell) * int(push.cell), 0);
     ivec2 high = low + int(push.cell) - 1;
     float scale = push.sigma > 0.0 ? -0.5 / (push.sigma * push.sigma) : 0.0;
@@ -26,5 +27,7 @@ void main()
         sum += weight * texelFetch(source, clamp(pixel + i * axis, low, high), 0).r;
         weights += weight;
     }
-    imageStore(target, pixel, vec4(sum / weights));
+    // The rim is lit, and what lies outside of the cell reads the rim.
+    bool rim = VERTICAL != 0u && (any(equal(pixel, low)) || any(equal(pixel, high)));
+    imageStore(target, pixel, vec4(rim ? 1e38 : sum / weights));
 }

@@ -24,19 +24,20 @@ void main()
     vec3 ray = cells[cell].forward.xyz + (perspective ? aside : vec3(0.0));
     float near = cells[cell].range.x;
 
-    float first = NEVER;
+    float first = SOLID_OPEN;
     for (uint i = PLANES; i < PLANES + SOLIDS; i++) {
         vec3 offset = vec3(objects[i].row0.w, objects[i].row1.w, objects[i].row2.w);
-        vec2 span = solid_span(uint(objects[i].shape.w), objects[i].shape, turned(i, origin) + offset, turned(i, ray));
+        uint kind = uint(objects[i].shape.w);
+        vec2 span = solid_span(solid_reach(kind, objects[i].shape), solid_ball(kind), turned(i, origin) + offset, turned(i, ray));
         float t = span.x >= near ? span.x : span.y;
         first = span.x <= span.y && t >= near ? min(first, t) : first;
     }
-    float behind = NEVER;
+    float behind = SOLID_OPEN;
     for (uint i = 0u; i < PLANES; i++) {
         vec4 row = objects[i].row1;
         float slope = dot(row.xyz, ray);
         float t = -(dot(row.xyz, origin) + row.w) / slope;
         behind = slope < 0.0 && t >= near ? min(behind, t) : behind;
     }
-    value = shadow_value(cell, first < NEVER ? first : behind);
+    value = shadow_value(cell, first < SOLID_OPEN ? first : behind);
 }

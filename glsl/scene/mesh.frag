@@ -20,5 +20,5 @@ void main()
         discard;
     vec3 facing = normalize(normal);
     facing = dot(facing, ray) > 0.0 ? -facing : facing;
-    color = vec4(albedo * (far_lights(0u, world, facing) + ambient_at(facing)), 1.0);
+    color = vec4(albedo * (far_lights(0u, world, facing) + environment_blurred(facing)), 1.0);
 }

@@ -53,7 +53,7 @@ float object_share(uint i, vec4 at, float exponent)
 {
     if ((SHADOWED >> i & 1u) == 0u)
         return 1.0;
-    return shadow_share(at, exponent, float(bitCount(SHADOWED & (1u << i) - 1u)), float(bitCount(SHADOWED)));
+    return shadow_share(light_kind(i) != SF_LIGHT_KIND_DIRECTIONAL, at, exponent, float(bitCount(SHADOWED & (1u << i) - 1u)), float(bitCount(SHADOWED)));
 }
 
 // Share of light `i` that the smoke lets through; `q`: the point as the light sees it.
@@ -83,13 +83,6 @@ vec3 far_lights(uint first, vec3 world, vec3 normal)
         sum += irradiance * share;
     }
     return sum;
-}
-
-vec3 ambient_at(vec3 normal)
-{
-    if (LEVEL != 0u)
-        return max(frame.sh[0].rgb + normal.y * frame.sh[1].rgb + (2.0 - 6.0 * normal.y * normal.y) * frame.sh[6].rgb, 0.0);
-    return environment_blurred(normal);
 }
 
 #endif

@@ -17,7 +17,7 @@ void main()
     vec2 ndc = pixel_ndc(vec2(forward.w, right.w), gl_FragCoord.xy);
     vec3 ray = forward.xyz + ndc.x * right.xyz + ndc.y * up.xyz;
     depth = SF_DEPTH_FAR;
-    color = vec4(horizon.rgb, 1.0);
+    color = vec4(horizon.rgb, up.w);
     if (ENVIRONMENT == 0u)
         color.rgb = environment_gradient(ray, zenith.rgb, horizon.rgb, ground.rgb);
     if (ENVIRONMENT == 2u)

@@ -6,7 +6,7 @@
 
 layout(location = 0) flat out vec4 forward; // w: 1/width
 layout(location = 1) flat out vec4 right;   // w: 1/height
-layout(location = 2) flat out vec4 up;
+layout(location = 2) flat out vec4 up;      // w: alpha
 layout(location = 3) flat out vec4 zenith;
 layout(location = 4) flat out vec4 horizon;
 layout(location = 5) flat out vec4 ground;
@@ -15,12 +15,14 @@ void main()
 {
     forward = vec4(frame.forward.xyz, frame.size.z);
     right = vec4(frame.right.xyz, frame.size.w);
-    up = frame.up;
+    up = vec4(frame.up.xyz, 1.0);
     zenith = frame.zenith;
     horizon = frame.horizon;
     ground = frame.ground;
     if (ENVIRONMENT == 1u || ENVIRONMENT == 3u)
         horizon = frame.background;
+    if (ENVIRONMENT == 3u && frame.background.rgb == vec3(0.0))
+        up.w = 0.0; // nothing at all: for laying over another picture
 
     vec3 beyond = vec3(0.0, 0.0, 1.0); // everything
     if (PLANES == 1u) {

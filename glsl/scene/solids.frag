@@ -41,16 +41,18 @@ void main()
 {
     vec2 ndc = pixel_ndc(vec2(forward.w, right.w), gl_FragCoord.xy);
     vec3 ray = forward.xyz + ndc.x * right.xyz + ndc.y * up.xyz;
-    uint kind = uint(shape.w);
-    vec2 span = solid_span(kind, shape, eye.xyz, ray);
+    vec2 span = solid_span(reach, level[0].w, eye.xyz, ray);
     depth = span.x >= up.w ? span.x : span.y; // from within, or cut open by the near plane: the far side
     if (span.x > span.y || depth < up.w || depth >= planes_depth(ndc, ray))
         discard;
-    vec3 normal = solid_normal(kind, shape, eye.xyz + depth * ray);
+    vec3 normal = solid_normal(reach, level[0].w, eye.xyz + depth * ray);
     normal = dot(normal, ray) > 0.0 ? -normal : normal;
     vec3 light = near_light(ndc, ray, normal);
     vec3 upright = vec3(dot(normal, axes[0]), dot(normal, axes[1]), dot(normal, axes[2]));
-    light += ambient_at(upright);
+    if (LEVEL != 0u)
+        light += max(level[0].rgb + upright.y * (level[1].rgb + upright.y * level[2].rgb), 0.0);
+    else
+        light += environment_blurred(upright);
     if (LIGHTS > NEAR) {
         vec3 world_ray = vec3(dot(ray, axes[0]), dot(ray, axes[1]), dot(ray, axes[2]));
         light += far_lights(NEAR, frame.eye.xyz + depth * world_ray, upright);

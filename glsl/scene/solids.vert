@@ -4,6 +4,7 @@
 #include "scene/shade.glsl"
 #include "scene/half_plane.glsl"
 #include "scene/solids.glsl"
+#include "lib/solid.glsl"
 
 SOLID_VARYINGS(out)
 
@@ -45,7 +46,12 @@ void main()
     right = vec4(turned(object, frame.right.xyz), frame.size.w);
     up = vec4(turned(object, frame.up.xyz), frame.eye.w);
     eye = vec4(turned(object, frame.eye.xyz) + offset, 0.0);
-    shape = objects[object].shape;
+    vec4 shape = objects[object].shape;
+    uint kind = uint(shape.w);
+    reach = solid_reach(kind, shape);
+    level[0] = vec4(frame.sh[0].rgb + 2.0 * frame.sh[6].rgb, solid_ball(kind));
+    level[1] = frame.sh[1];
+    level[2] = -6.0 * frame.sh[6];
     albedo = vec4(objects[object].albedo.rgb, float(object));
     axes[0] = vec3(objects[object].row0.x, objects[object].row1.x, objects[object].row2.x);
     axes[1] = vec3(objects[object].row0.y, objects[object].row1.y, objects[object].row2.y);
@@ -55,10 +61,8 @@ void main()
         ground.xyz = plane_horizon(0u, ground.w);
     hand_over_light();
 
-    uint kind = uint(shape.w);
-    vec3 reach = kind == SF_OBJECT_KIND_BOX ? shape.xyz : kind == SF_OBJECT_KIND_SPHERE ? shape.xxx : shape.xyx;
     // A little larger, or rounding would lose pixels at the edges.
     uint corner = CORNERS[gl_VertexIndex];
-    vec3 at = reach * 1.001 * (vec3(corner & 1u, corner >> 1u & 1u, corner >> 2u) * 2.0 - 1.0) - offset;
+    vec3 at = solid_bounds(reach, level[0].w) * 1.001 * (vec3(corner & 1u, corner >> 1u & 1u, corner >> 2u) * 2.0 - 1.0) - offset;
     gl_Position = frame.world_to_clip * vec4(dot(at, axes[0]), dot(at, axes[1]), dot(at, axes[2]), 1.0);
 }

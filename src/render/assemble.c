@@ -99,12 +99,13 @@ static void find_constants(struct parts *parts)
     for (uint32_t i = 0; i < scene->object_count; i++)
         checkered |= scene->objects[i].kind == SF_OBJECT_PLANE && scene->objects[i].checker > 0;
     uint32_t shown = !environment->visible ? 3 : sf_scene_shows_picture(scene) ? 2 : environment->kind == SF_ENVIRONMENT_SKY ? 0 : 1;
+    bool dims = assembly->method.smoke_map && (scene->method != SF_METHOD_THICK || scene->thick.ground_shadow);
     uint32_t level = !environment->pixels; /* sky and colour are the same all around */
     const uint32_t constants[] = {assembly->list.planes,
                                   scene->light_count,
                                   kinds,
                                   sf_shadow_mask(&assembly->shadow),
-                                  assembly->method.smoke_map ? casts : 0,
+                                  dims ? casts : 0,
                                   checkered,
                                   shown,
                                   level};

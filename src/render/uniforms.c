@@ -216,13 +216,13 @@ static void object_axes(const struct sf_object *from, double axes[3][3])
     memcpy(axes, columns, sizeof columns);
 }
 
-/* A plane's y is its normal; x and z are any two that complete it, the world's own for a level plane. */
+/* A plane's y is its normal; x and z are the checker's axes (docs/scene.md), the world's own for a level plane. */
 static void plane_axes(const struct sf_object *from, double axes[3][3])
 {
     for (int i = 0; i < 3; i++)
         axes[1][i] = from->normal[i];
     normalize(axes[1]);
-    const double along[3] = {0, fabs(axes[1][2]) > 0.9 ? 1 : 0, fabs(axes[1][2]) > 0.9 ? 0 : 1};
+    const double along[3] = {fabs(axes[1][2]) > 0.9 ? 1 : 0, 0, fabs(axes[1][2]) > 0.9 ? 0 : 1};
     cross(axes[1], along, axes[0]);
     normalize(axes[0]);
     cross(axes[0], axes[1], axes[2]);
