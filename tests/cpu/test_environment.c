@@ -20,7 +20,9 @@ static void write_exr(const char *name, int width, int height, paint_fn paint)
         for (int x = 0; x < width; x++)
             paint(x, y, pixels + ((size_t)y * (size_t)width + (size_t)x) * 3);
     for (int c = 0; c < 3; c++)
-        channels[c] = (struct sf_exr_channel){.name = c == 0 ? "R" : c == 1 ? "G" : "B",
+        channels[c] = (struct sf_exr_channel){.name = c == 0   ? "R"
+                                                      : c == 1 ? "G"
+                                                               : "B",
                                               .pixels = pixels + c,
                                               .pixel_stride = 3 * sizeof *pixels,
                                               .row_stride = (size_t)width * 3 * sizeof *pixels,
@@ -93,7 +95,8 @@ static void integrate(const struct sf_scene *scene, const float normal[3], doubl
     }
 }
 
-static const float directions[][3] = {{0, 1, 0}, {0, -1, 0}, {1, 0, 0}, {0, 0, -1}, {0.6f, 0.8f, 0}, {-0.6f, 0, 0.8f}, {0.48f, -0.6f, 0.64f}};
+static const float directions[][3] = {{0, 1, 0},        {0, -1, 0},           {1, 0, 0}, {0, 0, -1}, {0.6f, 0.8f, 0},
+                                      {-0.6f, 0, 0.8f}, {0.48f, -0.6f, 0.64f}};
 
 static void test_constant_light_gives_itself(void **state)
 {
@@ -119,7 +122,8 @@ static void test_constant_light_gives_itself(void **state)
 
 static void test_sky(void **state)
 {
-    struct sf_scene *scene = parse("{\"environment\":{\"zenith\":[0,0,1],\"horizon\":[1,1,1],\"ground\":[0.2,0,0],\"intensity\":3}}");
+    struct sf_scene *scene =
+        parse("{\"environment\":{\"zenith\":[0,0,1],\"horizon\":[1,1,1],\"ground\":[0.2,0,0],\"intensity\":3}}");
     float rgb[3];
 
     (void)state;
@@ -136,7 +140,8 @@ static void test_sky(void **state)
     sf_scene_destroy(&scene);
 }
 
-/* Order 2 holds the irradiance of any sky to within a few per cent (Ramamoorthi and Hanrahan); of this smooth one, to one. */
+/* Order 2 holds the irradiance of any sky to within a few per cent (Ramamoorthi and Hanrahan); of this smooth one, to
+ * one. */
 static void test_ambient_of_the_sky(void **state)
 {
     struct sf_scene *scene = parse("{}");
@@ -158,7 +163,8 @@ static void test_ambient_of_a_half(void **state)
     float rgb[3];
 
     (void)state;
-    /* Light 1/2 from the upper half: bands 0 and 1 are known by heart, band 2 is none. sh0 = 1/4, sh1 = 1/2 3/(4 pi) 2/3 pi = 1/4. */
+    /* Light 1/2 from the upper half: bands 0 and 1 are known by heart, band 2 is none. sh0 = 1/4, sh1 = 1/2 3/(4 pi)
+     * 2/3 pi = 1/4. */
     write_exr("half.exr", 32, 16, upper_half);
     scene = parse("{\"environment\":{\"type\":\"latlong\",\"file\":\"half.exr\"}}");
     same(scene->environment.sh[0], 0.25, 0.25, 0.25, 1e-5);
@@ -174,7 +180,8 @@ static void test_ambient_of_a_half(void **state)
 static void test_panorama(void **state)
 {
     static const char format[] = "{\"environment\":{\"type\":\"latlong\",\"file\":\"quarters.exr\",\"rotation\":%d}}";
-    static const float middles[4][3] = {{-1, 0, 1}, {-1, 0, -1}, {1, 0, -1}, {1, 0, 1}}; /* of the quarters, from the left edge */
+    static const float middles[4][3] = {
+        {-1, 0, 1}, {-1, 0, -1}, {1, 0, -1}, {1, 0, 1}}; /* of the quarters, from the left edge */
     float rgb[3], ambient[3];
     double truth[3];
     char text[256];
@@ -225,8 +232,8 @@ static void test_cube(void **state)
     static const struct {
         float axis[3], s[3], t[3];
     } faces[6] = {
-        {{1, 0, 0}, {0, 0, -1}, {0, -1, 0}}, {{-1, 0, 0}, {0, 0, 1}, {0, -1, 0}},  {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}},
-        {{0, -1, 0}, {1, 0, 0}, {0, 0, -1}}, {{0, 0, 1}, {1, 0, 0}, {0, -1, 0}}, {{0, 0, -1}, {-1, 0, 0}, {0, -1, 0}},
+        {{1, 0, 0}, {0, 0, -1}, {0, -1, 0}}, {{-1, 0, 0}, {0, 0, 1}, {0, -1, 0}}, {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}},
+        {{0, -1, 0}, {1, 0, 0}, {0, 0, -1}}, {{0, 0, 1}, {1, 0, 0}, {0, -1, 0}},  {{0, 0, -1}, {-1, 0, 0}, {0, -1, 0}},
     };
     struct sf_scene *scene;
     char name[32];
@@ -236,7 +243,8 @@ static void test_cube(void **state)
         snprintf(name, sizeof name, "f%d.exr", face_number);
         write_exr(name, 16, 16, numbered);
     }
-    scene = parse("{\"environment\":{\"type\":\"cube\",\"files\":[\"f0.exr\",\"f1.exr\",\"f2.exr\",\"f3.exr\",\"f4.exr\",\"f5.exr\"]}}");
+    scene = parse("{\"environment\":{\"type\":\"cube\",\"files\":[\"f0.exr\",\"f1.exr\",\"f2.exr\",\"f3.exr\",\"f4."
+                  "exr\",\"f5.exr\"]}}");
     assert_int_equal(scene->environment.width, 64);
     assert_int_equal(scene->environment.height, 32);
     for (int f = 0; f < 6; f++) {
@@ -295,10 +303,12 @@ static void test_faults(void **state)
     refuse("{\"environment\":{\"type\":\"latlong\",\"file\":\"junk.exr\"}}", "test.json: /environment/file: ");
     refuse("{\"environment\":{\"type\":\"latlong\",\"file\":\"junk.png\"}}", "test.json: /environment/file: ");
     refuse("{\"environment\":{\"type\":\"latlong\",\"file\":\"junk.hdr\"}}", "test.json: /environment/file: ");
-    refuse("{\"environment\":{\"type\":\"cube\",\"files\":[\"square.exr\",\"black.exr\",\"wide.exr\",\"a\",\"b\",\"c\"]}}",
-           "test.json: /environment/files/2: 'wide.exr' is 8x4; the six pictures of a cube are squares of one size");
-    refuse("{\"environment\":{\"type\":\"cube\",\"files\":[\"square.exr\",\"black.exr\",\"none.exr\",\"a\",\"b\",\"c\"]}}",
-           "test.json: /environment/files/2: ");
+    refuse(
+        "{\"environment\":{\"type\":\"cube\",\"files\":[\"square.exr\",\"black.exr\",\"wide.exr\",\"a\",\"b\",\"c\"]}}",
+        "test.json: /environment/files/2: 'wide.exr' is 8x4; the six pictures of a cube are squares of one size");
+    refuse(
+        "{\"environment\":{\"type\":\"cube\",\"files\":[\"square.exr\",\"black.exr\",\"none.exr\",\"a\",\"b\",\"c\"]}}",
+        "test.json: /environment/files/2: ");
 }
 
 int main(void)

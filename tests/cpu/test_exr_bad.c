@@ -169,11 +169,35 @@ static void test_damaged(void **state)
     free(tiled);
 }
 
+/* An uncompressed chunk that says it is shorter than its pixels: they must not come from memory that nobody filled. */
+static void test_short_chunk(void **state)
+{
+    enum { WIDTH = 16, HEIGHT = 4, LINE = WIDTH * 14 };
+    struct picture p;
+    unsigned char *data;
+    size_t size;
+    struct sf_exr exr;
+
+    (void)state;
+    picture_make(&p, WIDTH, HEIGHT, SF_EXR_NONE);
+    assert_int_equal(sf_exr_encode(&p.frame, &log_caught, &data, &size), SF_OK);
+    /* The last line: its number, its size, its pixels. */
+    unsigned char *leader = data + size - LINE - 8;
+    assert_int_equal(leader[0], HEIGHT - 1);
+    assert_int_equal(leader[4], LINE);
+    leader[4] = LINE - 2;
+    assert_int_equal(sf_exr_decode(data, size, "short", NULL, 0, &exr, &log_caught), SF_ERROR_IO);
+    assert_caught(&caught, "'short': not a sound OpenEXR file");
+    free(data);
+    picture_free(&p);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_no_room),
         cmocka_unit_test(test_tiles),
+        cmocka_unit_test(test_short_chunk),
         cmocka_unit_test(test_damaged),
     };
 

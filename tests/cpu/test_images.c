@@ -68,6 +68,8 @@ static void test_tone_sane(void **state)
         assert_true(last > 0.99f);
         sf_tone_map(&tone, (const float[3]){0, 0, 0}, display);
         assert_true(display[0] < 1e-6f);
+        sf_tone_map(&tone, (const float[3]){HUGE_VALF, HUGE_VALF, HUGE_VALF}, display);
+        assert_true(display[0] > 0.99f && display[1] > 0.99f && display[2] > 0.99f);
         for (size_t i = 0; i < SF_COUNT(strange); i++) {
             sf_tone_map(&tone, strange[i], display);
             for (int c = 0; c < 3; c++)
@@ -422,11 +424,6 @@ static void test_kinds(void **state)
     struct sf_image image;
 
     (void)state;
-    assert_int_equal(sf_image_kind("a/b.EXR"), SF_IMAGE_EXR);
-    assert_int_equal(sf_image_kind("b.png"), SF_IMAGE_PNG);
-    assert_int_equal(sf_image_kind("sky.Hdr"), SF_IMAGE_HDR);
-    assert_int_equal(sf_image_kind("exr"), SF_IMAGE_UNKNOWN);
-    assert_int_equal(sf_image_kind(""), SF_IMAGE_UNKNOWN);
     assert_int_equal(sf_file_write("text.png", "no picture", 10, &log_caught), SF_OK);
     assert_int_equal(sf_image_read("text.png", &image, &log_caught), SF_ERROR_IO);
     assert_caught(&caught, "'text.png': it is neither EXR nor PNG nor Radiance HDR");

@@ -182,7 +182,8 @@ static void refuse(const struct sf_param_group *group, const struct sf_param *ro
 
 static void refuse_row(const struct sf_param_group *group, const struct sf_param *row)
 {
-    static const char *const junk[] = {"", " 1", "1 ", "nan", "inf", "-inf", "0x10", "1e999", "abc", "1,2,3,4", "1,,2", ","};
+    static const char *const junk[] = {"",     " 1",    "1 ",  "nan",     "inf",  "-inf",
+                                       "0x10", "1e999", "abc", "1,2,3,4", "1,,2", ","};
     unsigned n = sf_param_components(row);
     char text[128], low[64], high[64];
 
@@ -219,13 +220,19 @@ static void test_bad_values_are_refused(void **state)
 
 static void test_messages_help(void **state)
 {
-    const struct sf_param_group *camera = sf_param_find(&sf_scene_group, "camera")->group;
+    const struct sf_param_group *camera = sf_param_find(&sf_scene_group, "camera")->group, *emitters;
 
     (void)state;
-    refuse(camera, sf_param_find(camera, "type"), "orbti", "name: 'orbti' is not one of fixed, orbit, keyframes, did you mean orbit?");
+    refuse(camera, sf_param_find(camera, "type"), "orbti",
+           "name: 'orbti' is not one of fixed, orbit, keyframes, did you mean orbit?");
     refuse(camera, sf_param_find(camera, "fov"), "171", "name: 171 is out of range: 1 to 170 deg");
     refuse(camera, sf_param_find(camera, "eye"), "1,2", "three numbers with commas");
     assert_null(sf_param_find(camera, "fovy"));
+    refuse(&sf_scene_particle_group, sf_param_find(&sf_scene_particle_group, "tile"), "4",
+           "name: 4 is out of range: 0 to 3");
+    emitters = sf_param_find(&sf_scene_group, "emitters")->group;
+    refuse(emitters, sf_param_find(emitters, "lifetime"), "2,1",
+           "name: '2,1' is not a range: the lower number comes first");
 }
 
 static void test_defaults(void **state)
@@ -261,10 +268,26 @@ static void check_number(const char *text)
 
 static void test_numbers(void **state)
 {
-    static const char *const fine[] = {"0", "-0", "+1", "1.", ".5", "1e5", "1E-5", "1e+5", "123456789012345678901234567890",
-                                       "0.1", "9007199254740993", "1e22", "1e23", "1e-22", "2.2250738585072014e-308",
-                                       "1.7976931348623157e308", "4.9e-324", "000123.4500"};
-    static const char *const bad[] = {"", "-", "+", ".", "e5", "1e", "1e+", "1.2.3", "--1", "1 ", " 1", "nan", "inf", "0x1p3", "1e400", "1_000"};
+    static const char *const fine[] = {"0",
+                                       "-0",
+                                       "+1",
+                                       "1.",
+                                       ".5",
+                                       "1e5",
+                                       "1E-5",
+                                       "1e+5",
+                                       "123456789012345678901234567890",
+                                       "0.1",
+                                       "9007199254740993",
+                                       "1e22",
+                                       "1e23",
+                                       "1e-22",
+                                       "2.2250738585072014e-308",
+                                       "1.7976931348623157e308",
+                                       "4.9e-324",
+                                       "000123.4500"};
+    static const char *const bad[] = {"",    "-",  "+",  ".",   "e5",  "1e",    "1e+",   "1.2.3",
+                                      "--1", "1 ", " 1", "nan", "inf", "0x1p3", "1e400", "1_000"};
     char text[64];
     double value;
 

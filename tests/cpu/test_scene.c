@@ -85,19 +85,20 @@ static void test_least_scene_and_defaults(void **state)
 
 static void test_values_arrive(void **state)
 {
-    struct sf_scene *scene = parse(
-        "{\"camera\":{\"type\":\"orbit\",\"eye\":[1,2,3],\"up\":[0,0.5,0],\"near\":0.2,\"period\":-8},"
-        "\"lights\":[{\"type\":\"spot\",\"position\":[0,3,0],\"direction\":[0,-2,0],\"inner\":5,\"outer\":9,\"shadows\":false}],"
-        "\"objects\":[{\"type\":\"plane\",\"normal\":[0,3,4],\"albedo\":[0.1,0.2,0.3]},"
-        "{\"type\":\"plane\",\"albedo2\":[1,1,1],\"checker\":2},"
-        "{\"type\":\"cylinder\",\"radius\":2,\"height\":3,\"rotation\":[10,20,30]}],"
-        "\"medium\":{\"extinction\":7.5,\"g\":-0.5},"
-        "\"ramp\":[{\"at\":0.25,\"color\":[1,0,0]},{\"at\":0.5,\"color\":[0,1,0]}],"
-        "\"emitters\":[{\"type\":\"box\",\"direction\":[0,0,0],\"lifetime\":3,\"speed\":[1,2],\"burst\":5},"
-        "{\"type\":\"list\",\"extinction\":2,\"still\":true,\"particles\":[{\"centre\":[1,2,3],\"radius\":0.5},"
-        "{\"centre\":[4,5,6],\"radius\":0.25,\"extinction\":9,\"tile\":3}]}],"
-        "\"forces\":[{\"type\":\"vortex\",\"strength\":2,\"axis\":[0,0,2]},{\"type\":\"drag\",\"strength\":1}],"
-        "\"method\":\"none\",\"sim\":{\"fps\":25}}");
+    struct sf_scene *scene =
+        parse("{\"camera\":{\"type\":\"orbit\",\"eye\":[1,2,3],\"up\":[0,0.5,0],\"near\":0.2,\"period\":-8},"
+              "\"lights\":[{\"type\":\"spot\",\"position\":[0,3,0],\"direction\":[0,-2,0],\"inner\":5,\"outer\":9,"
+              "\"shadows\":false}],"
+              "\"objects\":[{\"type\":\"plane\",\"normal\":[0,3,4],\"albedo\":[0.1,0.2,0.3]},"
+              "{\"type\":\"plane\",\"albedo2\":[1,1,1],\"checker\":2},"
+              "{\"type\":\"cylinder\",\"radius\":2,\"height\":3,\"rotation\":[10,20,30]}],"
+              "\"medium\":{\"extinction\":7.5,\"g\":-0.5},"
+              "\"ramp\":[{\"at\":0.25,\"color\":[1,0,0]},{\"at\":0.5,\"color\":[0,1,0]}],"
+              "\"emitters\":[{\"type\":\"box\",\"direction\":[0,0,0],\"lifetime\":3,\"speed\":[1,2],\"burst\":5},"
+              "{\"type\":\"list\",\"extinction\":2,\"still\":true,\"particles\":[{\"centre\":[1,2,3],\"radius\":0.5},"
+              "{\"centre\":[4,5,6],\"radius\":0.25,\"extinction\":9,\"tile\":3}]}],"
+              "\"forces\":[{\"type\":\"vortex\",\"strength\":2,\"axis\":[0,0,2]},{\"type\":\"drag\",\"strength\":1}],"
+              "\"method\":\"none\",\"sim\":{\"fps\":25}}");
 
     (void)state;
     assert_int_equal(scene->camera.kind, SF_CAMERA_ORBIT);
@@ -130,9 +131,8 @@ static void test_values_arrive(void **state)
 
 static void test_comments_and_schema(void **state)
 {
-    struct sf_scene *scene =
-        parse("\xef\xbb\xbf{\"$schema\":\"x\",\"//\":[\"a\",1],\"sim\":{\"//\":\"b\",\"seed\":4},"
-              "\"lights\":[{\"//\":{\"deep\":true},\"type\":\"point\",\"position\":[0,1,0]}]}");
+    struct sf_scene *scene = parse("\xef\xbb\xbf{\"$schema\":\"x\",\"//\":[\"a\",1],\"sim\":{\"//\":\"b\",\"seed\":4},"
+                                   "\"lights\":[{\"//\":{\"deep\":true},\"type\":\"point\",\"position\":[0,1,0]}]}");
     struct sf_scene *plain = parse("{\"lights\":[{\"position\":[0,1,0],\"type\":\"point\"}],\"sim\":{\"seed\":4}}");
 
     (void)state;
@@ -146,7 +146,8 @@ static void test_comments_and_schema(void **state)
 
 static void test_orbit(void **state)
 {
-    struct sf_scene *scene = parse("{\"camera\":{\"type\":\"orbit\",\"eye\":[1,3,4],\"target\":[1,2,0],\"period\":8,\"fov\":50}}");
+    struct sf_scene *scene =
+        parse("{\"camera\":{\"type\":\"orbit\",\"eye\":[1,3,4],\"target\":[1,2,0],\"period\":8,\"fov\":50}}");
     struct sf_camera_pose pose;
 
     (void)state;
@@ -230,7 +231,8 @@ static void test_emitter_path(void **state)
 
 /* ---- hash and sets ---- */
 
-static const char *small = "{\"sim\":{\"seed\":3},\"lights\":[{\"type\":\"point\",\"position\":[0,1,0],\"intensity\":2}]}";
+static const char *small =
+    "{\"sim\":{\"seed\":3},\"lights\":[{\"type\":\"point\",\"position\":[0,1,0],\"intensity\":2}]}";
 
 static uint64_t hash_with(const char *set)
 {
@@ -273,9 +275,18 @@ static void test_hash_counts_files(void **state)
 
 static void test_sets(void **state)
 {
-    static const char *const sets[] = {"thick.steps=24",       "lights.0.intensity=3.5", "method=none",  "medium.albedo=0.1,0.2,0.3",
-                                       "thick.detail=0",       "thick.scene_shadow=false", "camera.type=orbit", "camera.period=5",
-                                       "lights.0.type=spot",   "lights.0.direction=0,-1,0", "environment.zenith=1e-1,0,0", "thick.steps=25"};
+    static const char *const sets[] = {"thick.steps=24",
+                                       "lights.0.intensity=3.5",
+                                       "method=none",
+                                       "medium.albedo=0.1,0.2,0.3",
+                                       "thick.detail=0",
+                                       "thick.scene_shadow=false",
+                                       "camera.type=orbit",
+                                       "camera.period=5",
+                                       "lights.0.type=spot",
+                                       "lights.0.direction=0,-1,0",
+                                       "environment.zenith=1e-1,0,0",
+                                       "thick.steps=25"};
     struct sf_scene *scene = parse_with(small, sets, SF_COUNT(sets));
 
     (void)state;

@@ -115,18 +115,18 @@ static inline void kit_drop(struct sf_player **player, struct sf_plan **plan, st
     sf_graph_destroy(graph);
 }
 
-static inline sf_resource kit_buffer(struct sf_graph *graph, const char *name, enum sf_lifetime lifetime, uint64_t bytes)
+static inline sf_resource kit_buffer(struct sf_graph *graph, const char *name, enum sf_lifetime lifetime,
+                                     uint64_t bytes)
 {
     return sf_graph_buffer(graph, &(struct sf_buffer_desc){.name = name, .lifetime = lifetime, .bytes = bytes});
 }
 
-static inline sf_resource kit_image(struct sf_graph *graph, const char *name, enum sf_format format, enum sf_lifetime lifetime,
-                             uint32_t width, uint32_t height)
+static inline sf_resource kit_image(struct sf_graph *graph, const char *name, enum sf_format format,
+                                    enum sf_lifetime lifetime, uint32_t width, uint32_t height)
 {
-    return sf_graph_image(graph, &(struct sf_image_desc){.name = name,
-                                                         .format = format,
-                                                         .lifetime = lifetime,
-                                                         .size = {.width = width, .height = height}});
+    return sf_graph_image(
+        graph, &(struct sf_image_desc){
+                   .name = name, .format = format, .lifetime = lifetime, .size = {.width = width, .height = height}});
 }
 
 static inline void kit_copy(struct sf_graph *graph, const char *name, sf_resource from, sf_resource to)
@@ -134,13 +134,14 @@ static inline void kit_copy(struct sf_graph *graph, const char *name, sf_resourc
     const struct sf_use uses[] = {{.resource = from, .access = SF_ACCESS_TRANSFER_READ},
                                   {.resource = to, .access = SF_ACCESS_TRANSFER_WRITE}};
 
-    sf_graph_pass(graph, &(struct sf_pass_desc){
-                             .name = name, .kind = SF_PASS_TRANSFER, .uses = uses, .use_count = 2, .transfer = SF_TRANSFER_COPY});
+    sf_graph_pass(
+        graph, &(struct sf_pass_desc){
+                   .name = name, .kind = SF_PASS_TRANSFER, .uses = uses, .use_count = 2, .transfer = SF_TRANSFER_COPY});
 }
 
 /* to[i] = from[i] + *addend, over `count` words. */
-static inline void kit_add(struct sf_graph *graph, const char *name, sf_resource from, bool previous, sf_resource to, uint32_t count,
-                    const uint32_t *addend)
+static inline void kit_add(struct sf_graph *graph, const char *name, sf_resource from, bool previous, sf_resource to,
+                           uint32_t count, const uint32_t *addend)
 {
     const struct sf_use uses[] = {
         {.resource = from, .access = SF_ACCESS_STORAGE_READ, .binding = 0, .previous = previous},
@@ -170,8 +171,8 @@ static inline void kit_fill(struct sf_graph *graph, const char *name, sf_resourc
 }
 
 /* to = from, by way of the sampler: texel by texel, or half a texel to the right. */
-static inline void kit_sample(struct sf_graph *graph, const char *name, sf_resource from, bool previous, enum sf_sampler sampler,
-                              sf_resource to, uint32_t between)
+static inline void kit_sample(struct sf_graph *graph, const char *name, sf_resource from, bool previous,
+                              enum sf_sampler sampler, sf_resource to, uint32_t between)
 {
     const struct sf_use uses[] = {
         {.resource = from, .access = SF_ACCESS_SAMPLED, .binding = 0, .previous = previous, .sampler = sampler},

@@ -50,7 +50,7 @@ static struct sf_emitter *add_emitter(struct sf_scene *scene, int32_t kind)
     return emitter;
 }
 
-static struct sf_emitter *add_list(struct sf_scene *scene, struct sf_listed *list, uint32_t count)
+static inline struct sf_emitter *add_list(struct sf_scene *scene, struct sf_listed *list, uint32_t count)
 {
     struct sf_emitter *emitter = add_emitter(scene, SF_EMITTER_LIST);
 
@@ -63,7 +63,8 @@ static struct sf_force *add_force(struct sf_scene *scene, int32_t kind, float st
 {
     struct sf_force *force = &scene->forces[scene->force_count++];
 
-    *force = (struct sf_force){.kind = kind, .strength = strength, .scale = 1, .octaves = 1, .axis = {0, 1, 0}, .radius = 1};
+    *force =
+        (struct sf_force){.kind = kind, .strength = strength, .scale = 1, .octaves = 1, .axis = {0, 1, 0}, .radius = 1};
     return force;
 }
 
@@ -71,8 +72,13 @@ static struct sf_object *add_object(struct sf_scene *scene, int32_t kind, float 
 {
     struct sf_object *object = &scene->objects[scene->object_count++];
 
-    *object = (struct sf_object){
-        .kind = kind, .position = {x, y, z}, .normal = {0, 1, 0}, .size = {1, 1, 1}, .radius = 0.5f, .height = 1, .collide = true};
+    *object = (struct sf_object){.kind = kind,
+                                 .position = {x, y, z},
+                                 .normal = {0, 1, 0},
+                                 .size = {1, 1, 1},
+                                 .radius = 0.5f,
+                                 .height = 1,
+                                 .collide = true};
     return object;
 }
 
@@ -117,12 +123,14 @@ static struct snapshot take(struct sf_particles *particles)
     shot.list = calloc(shot.counts.live + 1, sizeof *shot.list);
     assert_non_null(shot.list);
     if (shot.counts.live)
-        assert_int_equal(sf_gpu_buffer_read(sf_particles_list(particles), 0, shot.list, shot.counts.live * sizeof *shot.list), SF_OK);
+        assert_int_equal(
+            sf_gpu_buffer_read(sf_particles_list(particles), 0, shot.list, shot.counts.live * sizeof *shot.list),
+            SF_OK);
     return shot;
 }
 
 /* From the beginning to that step and back. */
-static struct snapshot run_scene(const struct sf_scene *scene, uint32_t steps)
+static inline struct snapshot run_scene(const struct sf_scene *scene, uint32_t steps)
 {
     struct sf_particles *particles = start(scene);
     struct snapshot shot;
@@ -133,7 +141,45 @@ static struct snapshot run_scene(const struct sf_scene *scene, uint32_t steps)
     return shot;
 }
 
-static void assert_near(double value, double wanted, double tolerance, const char *what)
+static float from_order(uint32_t order)
+{
+    uint32_t bits = order & 0x80000000u ? order & 0x7fffffffu : ~order;
+    float value;
+
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+/* What must hold after any step. */
+static inline void check(const struct snapshot *shot)
+{
+    const struct sf_particle_counts *counts = &shot->counts;
+    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+
+    assert_int_equal(counts->births, counts->live + counts->dropped + counts->deaths);
+    assert_int_equal(counts->draw[0], 4);
+    assert_int_equal(counts->draw[1], counts->live);
+    assert_int_equal(counts->dispatch[0], (counts->live + 63) / 64);
+    for (uint32_t i = 0; i < counts->live; i++) {
+        const struct sf_particle *p = &shot->list[i];
+        const float centre[3] = {p->x, p->y, p->z};
+
+        assert_true(i == 0 || p->id > shot->list[i - 1].id); /* in order of birth */
+        assert_true(p->extinction >= 0 && p->extinction <= p->extinction0);
+        for (int axis = 0; axis < 3; axis++) {
+            assert_true(isfinite(centre[axis]));
+            low[axis] = fminf(low[axis], centre[axis] - p->radius);
+            high[axis] = fmaxf(high[axis], centre[axis] + p->radius);
+        }
+    }
+    for (int axis = 0; axis < 3; axis++) {
+        assert_true(counts->live ? from_order(counts->bounds_min[axis]) == low[axis]
+                                 : counts->bounds_min[axis] == 0xffffffffu);
+        assert_true(counts->live ? from_order(counts->bounds_max[axis]) == high[axis] : counts->bounds_max[axis] == 0);
+    }
+}
+
+static inline void assert_near(double value, double wanted, double tolerance, const char *what)
 {
     if (!(fabs(value - wanted) <= tolerance))
         fail_msg("%s is %.9g, not %.9g within %.2g", what, value, wanted, tolerance);

@@ -93,7 +93,8 @@ static void test_surroundings(void **state)
     kit_forget();
 }
 
-/* Places in memory never overlap, whatever is taken and given back in whatever order, and nothing is left in the end. */
+/* Places in memory never overlap, whatever is taken and given back in whatever order, and nothing is left in the end.
+ */
 static void test_memory(void **state)
 {
     enum { BUFFERS = 48, ROUNDS = 200, LARGEST = 8 << 20 };
@@ -117,7 +118,8 @@ static void test_memory(void **state)
             random = random * 1664525u + 1013904223u;
             sizes[i] = 1 + (random >> 8) % (random & 0x70 ? 5000 : LARGEST);
             memset(bytes, i + 1, sizes[i]);
-            assert_int_equal(sf_gpu_buffer_create(gpu, "piece", sizes[i], false, SF_ACCESS_STORAGE_READ, bytes, &buffers[i]), SF_OK);
+            assert_int_equal(
+                sf_gpu_buffer_create(gpu, "piece", sizes[i], false, SF_ACCESS_STORAGE_READ, bytes, &buffers[i]), SF_OK);
         }
     }
     free(bytes);
@@ -142,17 +144,21 @@ static void test_budget(void **state)
     assert_int_equal(sf_gpu_buffer_create(gpu, "first", 16 * MIB, false, SF_ACCESS_STORAGE_READ, NULL, &first), SF_OK);
     sf_gpu_memory(gpu, &used, &budget);
     assert_true(budget == 24 * MIB && used >= 16 * MIB && used <= budget);
-    assert_int_equal(sf_gpu_buffer_create(gpu, "second", 16 * MIB, false, SF_ACCESS_STORAGE_READ, NULL, &second), SF_ERROR_MEMORY);
+    assert_int_equal(sf_gpu_buffer_create(gpu, "second", 16 * MIB, false, SF_ACCESS_STORAGE_READ, NULL, &second),
+                     SF_ERROR_MEMORY);
     assert_null(second);
     assert_non_null(strstr(kit_record.last, "'second'"));
     assert_non_null(strstr(kit_record.last, "budget"));
     kit_fill_image(graph, "fill", image);
-    assert_int_equal(sf_plan_create(graph, &(struct sf_plan_memory){.needs = sf_gpu_memory_needs, .user = gpu}, &kit_log, &plan), SF_OK);
+    assert_int_equal(
+        sf_plan_create(graph, &(struct sf_plan_memory){.needs = sf_gpu_memory_needs, .user = gpu}, &kit_log, &plan),
+        SF_OK);
     assert_int_equal(sf_player_create(gpu, plan, &player), SF_ERROR_MEMORY);
     assert_null(player);
     assert_non_null(strstr(kit_record.last, "'image'"));
     sf_gpu_buffer_destroy(&first);
-    assert_int_equal(sf_gpu_buffer_create(gpu, "second", 16 * MIB, false, SF_ACCESS_STORAGE_READ, NULL, &second), SF_OK);
+    assert_int_equal(sf_gpu_buffer_create(gpu, "second", 16 * MIB, false, SF_ACCESS_STORAGE_READ, NULL, &second),
+                     SF_OK);
     sf_gpu_buffer_destroy(&second);
     kit_forget();
     kit_drop(&player, &plan, &graph);
@@ -186,7 +192,8 @@ static void test_limits(void **state)
     sf_resource a, b;
 
     (void)state;
-    kit_fill_image(graph, "fill", kit_image(graph, "image", SF_FORMAT_RGBA32F, SF_PERSISTENT, info->max_image_side + 1, 1));
+    kit_fill_image(graph, "fill",
+                   kit_image(graph, "image", SF_FORMAT_RGBA32F, SF_PERSISTENT, info->max_image_side + 1, 1));
     expect_refused(gpu, graph, "'image'");
     graph = kit_graph("large");
     a = kit_buffer(graph, "a", SF_TRANSIENT, large);
@@ -200,7 +207,8 @@ static void test_limits(void **state)
     kit_fill(graph, "fill", a, 0);
     kit_add(graph, "add", a, false, b, UINT32_MAX - 64, &one);
     expect_refused(gpu, graph, "'add'");
-    assert_int_equal(sf_gpu_image_create(gpu, "wide", SF_FORMAT_R8_UNORM, info->max_image_side + 1, 1, 1, SF_ACCESS_SAMPLED, &one, &image),
+    assert_int_equal(sf_gpu_image_create(gpu, "wide", SF_FORMAT_R8_UNORM, info->max_image_side + 1, 1, 1,
+                                         SF_ACCESS_SAMPLED, &one, &image),
                      SF_ERROR_USAGE);
     assert_null(image);
     kit_forget();
@@ -222,8 +230,9 @@ static enum sf_status exercise(struct sf_gpu *gpu)
     sf_resource in, picture, sum, block, kept, shown, out;
     enum sf_status status;
 
-    in = sf_graph_buffer(graph, &(struct sf_buffer_desc){
-                                    .name = "in", .lifetime = SF_IMPORTED, .bytes = sizeof words, .outside = SF_ACCESS_STORAGE_READ});
+    in = sf_graph_buffer(
+        graph, &(struct sf_buffer_desc){
+                   .name = "in", .lifetime = SF_IMPORTED, .bytes = sizeof words, .outside = SF_ACCESS_STORAGE_READ});
     picture = sf_graph_image(graph, &(struct sf_image_desc){.name = "picture",
                                                             .format = SF_FORMAT_RGBA8_UNORM,
                                                             .lifetime = SF_IMPORTED,

@@ -103,7 +103,8 @@ static void buoyancy_and_cooling_are_exact(void **state)
 }
 
 /* The air's velocity at points: a drag so strong that a particle has it after one step. */
-static void probe_air(struct sf_scene *scene, struct sf_listed *points, uint32_t count, uint32_t steps, double (*velocity)[3])
+static void probe_air(struct sf_scene *scene, struct sf_listed *points, uint32_t count, uint32_t steps,
+                      double (*velocity)[3])
 {
     struct snapshot shot;
 
@@ -131,7 +132,8 @@ static double unit_random(uint32_t *seed)
     return (*seed >> 8) / 16777216.0;
 }
 
-/* Central differences over h: their sum vanishes with h^2, while each term stays about rms / scale. Octaves turned and unturned. */
+/* Central differences over h: their sum vanishes with h^2, while each term stays about rms / scale. Octaves turned and
+ * unturned. */
 static void turbulence_is_free_of_divergence(void **state)
 {
     enum { POINTS = 512 };
@@ -201,7 +203,8 @@ static void turbulence_has_its_strength_and_changes(void **state)
     assert_near(sqrt(square), 3, 0.1, "the rms");
     for (int axis = 0; axis < 3; axis++)
         assert_near(mean[axis], 0, 0.15, "the mean");
-    /* After 1/rate the field has little to do with what it was: the rms of the change is that of two independent fields, sqrt(2) 3. */
+    /* After 1/rate the field has little to do with what it was: the rms of the change is that of two independent
+     * fields, sqrt(2) 3. */
     assert_in_range((uint64_t)(100 * sqrt(change)), 300, 520);
 }
 
@@ -251,7 +254,8 @@ static void energy_stays_sane(void **state)
     add_force(&scene, SF_FORCE_TURBULENCE, 1)->octaves = 3;
     shot = run_scene(&scene, 640);
     for (uint32_t i = 0; i < shot.counts.live; i++)
-        square += ((double)shot.list[i].vx * shot.list[i].vx + (double)shot.list[i].vy * shot.list[i].vy + (double)shot.list[i].vz * shot.list[i].vz) /
+        square += ((double)shot.list[i].vx * shot.list[i].vx + (double)shot.list[i].vy * shot.list[i].vy +
+                   (double)shot.list[i].vz * shot.list[i].vz) /
                   shot.counts.live;
     assert_true(sqrt(square) > 0.3 && sqrt(square) < 1.1);
     free(shot.list);
@@ -262,7 +266,8 @@ static void energy_stays_sane(void **state)
 /* Distance to an object, m, negative inside. */
 static double distance_to(const struct sf_object *object, const struct sf_particle *particle)
 {
-    double x[3] = {particle->x - (double)object->position[0], particle->y - (double)object->position[1], particle->z - (double)object->position[2]};
+    double x[3] = {particle->x - (double)object->position[0], particle->y - (double)object->position[1],
+                   particle->z - (double)object->position[2]};
     double q[3], outside = 0, deepest = -1e30;
 
     if (object->kind == SF_OBJECT_PLANE)
@@ -277,7 +282,8 @@ static double distance_to(const struct sf_object *object, const struct sf_partic
     }
     if (object->kind == SF_OBJECT_SPHERE)
         return sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]) - object->radius;
-    q[0] = object->kind == SF_OBJECT_BOX ? fabs(x[0]) - object->size[0] / 2.0 : sqrt(x[0] * x[0] + x[2] * x[2]) - object->radius;
+    q[0] = object->kind == SF_OBJECT_BOX ? fabs(x[0]) - object->size[0] / 2.0
+                                         : sqrt(x[0] * x[0] + x[2] * x[2]) - object->radius;
     q[1] = fabs(x[1]) - (object->kind == SF_OBJECT_BOX ? object->size[1] : object->height) / 2.0;
     q[2] = object->kind == SF_OBJECT_BOX ? fabs(x[2]) - object->size[2] / 2.0 : -1e30;
     for (int i = 0; i < 3; i++) {
@@ -292,8 +298,8 @@ static void assert_outside(const struct sf_scene *scene, const struct snapshot *
     for (uint32_t i = 0; i < shot->counts.live; i++)
         for (uint32_t j = 0; j < scene->object_count; j++)
             if (distance_to(&scene->objects[j], &shot->list[i]) < 0)
-                fail_msg("particle %u is %.4g m inside object %u after step %u", shot->list[i].id, -distance_to(&scene->objects[j], &shot->list[i]),
-                         j, shot->counts.step);
+                fail_msg("particle %u is %.4g m inside object %u after step %u", shot->list[i].id,
+                         -distance_to(&scene->objects[j], &shot->list[i]), j, shot->counts.step);
 }
 
 /* All kinds, turned; a rain through them, with a stream that begins inside one. */
@@ -418,7 +424,9 @@ static void fast_particles_do_not_pass_thin_walls(void **state)
     (void)state;
     memset(list, 0, sizeof list);
     for (int i = 0; i < 64; i++)
-        list[i] = (struct sf_listed){.centre = {-1 - 0.01f * (float)i, 0.1f * (float)i - 3.2f, 0}, .radius = 0.1f, .velocity = {128, (float)i - 32, 0}};
+        list[i] = (struct sf_listed){.centre = {-1 - 0.01f * (float)i, 0.1f * (float)i - 3.2f, 0},
+                                     .radius = 0.1f,
+                                     .velocity = {128, (float)i - 32, 0}};
     scene_init(&scene, 64);
     add_list(&scene, list, 64);
     wall = add_object(&scene, SF_OBJECT_BOX, 0, 0, 0);

@@ -1,4 +1,5 @@
-/* Drawing: blending to the last bit, depth, orientation, and what a pass does to its attachments when it draws nothing. */
+/* Drawing: blending to the last bit, depth, orientation, and what a pass does to its attachments when it draws nothing.
+ */
 #include "gpu_kit.h"
 
 enum { SIDE = 32, PIXELS = SIDE * SIDE };
@@ -42,8 +43,8 @@ static void finish(struct scene *scene)
 }
 
 /* Draws `instances` of a quad into the target; `clear` NULL keeps what is there. */
-static void draw(struct scene *scene, const char *name, const struct quad *quad, uint32_t instances, enum sf_blend blend,
-                 const float clear[4], enum sf_depth_test test, enum sf_load depth_load)
+static void draw(struct scene *scene, const char *name, const struct quad *quad, uint32_t instances,
+                 enum sf_blend blend, const float clear[4], enum sf_depth_test test, enum sf_load depth_load)
 {
     struct sf_use uses[2] = {
         {.resource = scene->target, .access = SF_ACCESS_COLOR, .load = clear ? SF_LOAD_CLEAR : SF_LOAD_KEEP},
@@ -52,17 +53,18 @@ static void draw(struct scene *scene, const char *name, const struct quad *quad,
 
     if (clear)
         memcpy(uses[0].clear, clear, sizeof uses[0].clear);
-    sf_graph_pass(scene->graph, &(struct sf_pass_desc){.name = name,
-                                                       .kind = SF_PASS_RASTER,
-                                                       .uses = uses,
-                                                       .use_count = test == SF_DEPTH_OFF ? 1 : 2,
-                                                       .shader = "test/quad.vert",
-                                                       .fragment = "test/flat.frag",
-                                                       .push = quad,
-                                                       .push_bytes = sizeof *quad,
-                                                       .vertices = 4,
-                                                       .instances = instances,
-                                                       .raster = {.blend = {blend}, .depth = test, .triangle_strip = true}});
+    sf_graph_pass(scene->graph,
+                  &(struct sf_pass_desc){.name = name,
+                                         .kind = SF_PASS_RASTER,
+                                         .uses = uses,
+                                         .use_count = test == SF_DEPTH_OFF ? 1 : 2,
+                                         .shader = "test/quad.vert",
+                                         .fragment = "test/flat.frag",
+                                         .push = quad,
+                                         .push_bytes = sizeof *quad,
+                                         .vertices = 4,
+                                         .instances = instances,
+                                         .raster = {.blend = {blend}, .depth = test, .triangle_strip = true}});
 }
 
 static void assert_pixel(const struct scene *scene, uint32_t x, uint32_t y, const float want[4])
@@ -70,8 +72,8 @@ static void assert_pixel(const struct scene *scene, uint32_t x, uint32_t y, cons
     const float *got = scene->pixels + (y * SIDE + x) * 4;
 
     if (memcmp(got, want, 4 * sizeof *got) != 0)
-        fail_msg("pixel %u, %u is %a %a %a %a and should be %a %a %a %a", x, y, (double)got[0], (double)got[1], (double)got[2],
-                 (double)got[3], (double)want[0], (double)want[1], (double)want[2], (double)want[3]);
+        fail_msg("pixel %u, %u is %a %a %a %a and should be %a %a %a %a", x, y, (double)got[0], (double)got[1],
+                 (double)got[2], (double)got[3], (double)want[0], (double)want[1], (double)want[2], (double)want[3]);
 }
 
 /* Left half as `inside`, right half as `outside`. */
@@ -83,7 +85,8 @@ static void assert_halves(const struct scene *scene, const float inside[4], cons
 }
 
 /* Values with full mantissas, so that a detour by way of half floats or 8 bits would show. */
-static const float A[4] = {0.1234567f, 7654.321f, -1.0e-7f, 0.7654321f}, B[4] = {0.7654321f, -3.3333333e6f, 2.2222222f, 0.1111111f};
+static const float A[4] = {0.1234567f, 7654.321f, -1.0e-7f, 0.7654321f},
+                   B[4] = {0.7654321f, -3.3333333e6f, 2.2222222f, 0.1111111f};
 
 static void test_min_add(void **state)
 {
@@ -147,20 +150,25 @@ static void test_two_targets(void **state)
     setup(&scene, SF_FORMAT_RGBA32F);
     second = kit_image(scene.graph, "second", SF_FORMAT_RGBA32F, SF_TRANSIENT, SIDE, SIDE);
     second_out = kit_buffer(scene.graph, "second.out", SF_READBACK, PIXELS * 16);
-    uses[0] = (struct sf_use){.resource = second, .access = SF_ACCESS_COLOR, .binding = 1, .load = SF_LOAD_CLEAR, .clear = {1, 1, 1, 1}};
-    uses[1] = (struct sf_use){
-        .resource = scene.target, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_CLEAR, .clear = {1, 1, 1, 1}};
-    sf_graph_pass(scene.graph, &(struct sf_pass_desc){.name = "draw",
-                                                      .kind = SF_PASS_RASTER,
-                                                      .uses = uses,
-                                                      .use_count = 2,
-                                                      .shader = "test/quad.vert",
-                                                      .fragment = "test/two.frag",
-                                                      .push = &quad,
-                                                      .push_bytes = sizeof quad,
-                                                      .vertices = 4,
-                                                      .instances = 1,
-                                                      .raster = {.blend = {SF_BLEND_ADD, SF_BLEND_NONE}, .triangle_strip = true}});
+    uses[0] = (struct sf_use){
+        .resource = second, .access = SF_ACCESS_COLOR, .binding = 1, .load = SF_LOAD_CLEAR, .clear = {1, 1, 1, 1}};
+    uses[1] = (struct sf_use){.resource = scene.target,
+                              .access = SF_ACCESS_COLOR,
+                              .binding = 0,
+                              .load = SF_LOAD_CLEAR,
+                              .clear = {1, 1, 1, 1}};
+    sf_graph_pass(scene.graph,
+                  &(struct sf_pass_desc){.name = "draw",
+                                         .kind = SF_PASS_RASTER,
+                                         .uses = uses,
+                                         .use_count = 2,
+                                         .shader = "test/quad.vert",
+                                         .fragment = "test/two.frag",
+                                         .push = &quad,
+                                         .push_bytes = sizeof quad,
+                                         .vertices = 4,
+                                         .instances = 1,
+                                         .raster = {.blend = {SF_BLEND_ADD, SF_BLEND_NONE}, .triangle_strip = true}});
     kit_copy(scene.graph, "read", scene.target, scene.out);
     kit_copy(scene.graph, "read second", second, second_out);
     scene.player = kit_player(scene.gpu, scene.graph, &scene.plan);
@@ -246,16 +254,17 @@ static void test_orientation(void **state)
     (void)state;
     for (size_t i = 0; i < SF_COUNT(cases); i++) {
         setup(&scene, SF_FORMAT_RGBA32F);
-        sf_graph_pass(scene.graph,
-                      &(struct sf_pass_desc){.name = "draw",
-                                             .kind = SF_PASS_RASTER,
-                                             .uses = &(struct sf_use){.resource = scene.target, .access = SF_ACCESS_COLOR, .load = SF_LOAD_CLEAR},
-                                             .use_count = 1,
-                                             .shader = "test/triangle.vert",
-                                             .fragment = "test/flat.frag",
-                                             .vertices = 3,
-                                             .instances = 1,
-                                             .raster = {.cull = cases[i].cull}});
+        sf_graph_pass(scene.graph, &(struct sf_pass_desc){.name = "draw",
+                                                          .kind = SF_PASS_RASTER,
+                                                          .uses = &(struct sf_use){.resource = scene.target,
+                                                                                   .access = SF_ACCESS_COLOR,
+                                                                                   .load = SF_LOAD_CLEAR},
+                                                          .use_count = 1,
+                                                          .shader = "test/triangle.vert",
+                                                          .fragment = "test/flat.frag",
+                                                          .vertices = 3,
+                                                          .instances = 1,
+                                                          .raster = {.cull = cases[i].cull}});
         play(&scene);
         assert_halves(&scene, cases[i].want, cases[i].want);
         finish(&scene);
@@ -289,7 +298,8 @@ static void test_counts(void **state)
 
     (void)state;
     setup(&scene, SF_FORMAT_RGBA32F);
-    use = (struct sf_use){.resource = scene.target, .access = SF_ACCESS_COLOR, .load = SF_LOAD_CLEAR, .clear = {10, 10, 10, 10}};
+    use = (struct sf_use){
+        .resource = scene.target, .access = SF_ACCESS_COLOR, .load = SF_LOAD_CLEAR, .clear = {10, 10, 10, 10}};
     indirect = sf_graph_buffer(scene.graph, &(struct sf_buffer_desc){.name = "arguments",
                                                                      .lifetime = SF_IMPORTED,
                                                                      .bytes = sizeof arguments,
@@ -303,7 +313,8 @@ static void test_counts(void **state)
     pass.draw_live = NULL;
     pass.indirect = indirect;
     sf_graph_pass(scene.graph, &pass);
-    assert_int_equal(sf_gpu_buffer_create(scene.gpu, "arguments", sizeof arguments, false, SF_ACCESS_STORAGE_READ, arguments, &buffer),
+    assert_int_equal(sf_gpu_buffer_create(scene.gpu, "arguments", sizeof arguments, false, SF_ACCESS_STORAGE_READ,
+                                          arguments, &buffer),
                      SF_OK);
     kit_copy(scene.graph, "read", scene.target, scene.out);
     scene.player = kit_player(scene.gpu, scene.graph, &scene.plan);
@@ -350,9 +361,15 @@ static void test_formats(void **state)
         int channels;
         float tolerance;
     } cases[] = {
-        {SF_FORMAT_R8_UNORM, 1, 0.002f},  {SF_FORMAT_RGBA8_UNORM, 4, 0.002f}, {SF_FORMAT_RGBA8_SRGB, 4, 0.004f},
-        {SF_FORMAT_R16F, 1, 0.0005f},     {SF_FORMAT_RG16F, 2, 0.0005f},      {SF_FORMAT_RGBA16F, 4, 0.0005f},
-        {SF_FORMAT_R32F, 1, 0},           {SF_FORMAT_RG32F, 2, 0},            {SF_FORMAT_RGBA32F, 4, 0},
+        {SF_FORMAT_R8_UNORM, 1, 0.002f},
+        {SF_FORMAT_RGBA8_UNORM, 4, 0.002f},
+        {SF_FORMAT_RGBA8_SRGB, 4, 0.004f},
+        {SF_FORMAT_R16F, 1, 0.0005f},
+        {SF_FORMAT_RG16F, 2, 0.0005f},
+        {SF_FORMAT_RGBA16F, 4, 0.0005f},
+        {SF_FORMAT_R32F, 1, 0},
+        {SF_FORMAT_RG32F, 2, 0},
+        {SF_FORMAT_RGBA32F, 4, 0},
     };
     const struct quad quad = {.rect = {-1, -1, 1, 1}, .color = {0.123f, 0.456f, 0.789f, 0.9f}};
     const float zero[4] = {0};
@@ -377,8 +394,9 @@ static void test_formats(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_min_add),     cmocka_unit_test(test_blends), cmocka_unit_test(test_two_targets), cmocka_unit_test(test_depth),
-        cmocka_unit_test(test_orientation), cmocka_unit_test(test_counts), cmocka_unit_test(test_persistent), cmocka_unit_test(test_formats),
+        cmocka_unit_test(test_min_add),    cmocka_unit_test(test_blends),      cmocka_unit_test(test_two_targets),
+        cmocka_unit_test(test_depth),      cmocka_unit_test(test_orientation), cmocka_unit_test(test_counts),
+        cmocka_unit_test(test_persistent), cmocka_unit_test(test_formats),
     };
     int skip = kit_probe();
 

@@ -1,5 +1,5 @@
-/* The sort on the device, in every way it can be tuned, against what stable and sorted mean: keys ascend, equal keys keep their order, and each payload,
- * the number of its pair, still has its key. */
+/* The sort on the device, in every way it can be tuned, against what stable and sorted mean: keys ascend, equal keys
+ * keep their order, and each payload, the number of its pair, still has its key. */
 #include "gpu_kit.h"
 #include <math.h>
 #include "base/hash.h"
@@ -30,18 +30,29 @@ static void open_fixture(struct fixture *f, struct sf_gpu *gpu, const struct sf_
     f->input = malloc(bytes);
     assert_non_null(f->input);
     f->graph = kit_graph("sort");
-    list = sf_graph_buffer(f->graph, &(struct sf_buffer_desc){.name = "list", .lifetime = SF_IMPORTED, .bytes = bytes, .outside = SF_ACCESS_TRANSFER_READ});
-    count = sf_graph_buffer(f->graph, &(struct sf_buffer_desc){.name = "count", .lifetime = SF_IMPORTED, .bytes = 4 * COUNT_WORDS, .outside = SF_ACCESS_STORAGE_READ});
+    list = sf_graph_buffer(
+        f->graph, &(struct sf_buffer_desc){
+                      .name = "list", .lifetime = SF_IMPORTED, .bytes = bytes, .outside = SF_ACCESS_TRANSFER_READ});
+    count = sf_graph_buffer(f->graph, &(struct sf_buffer_desc){.name = "count",
+                                                               .lifetime = SF_IMPORTED,
+                                                               .bytes = 4 * COUNT_WORDS,
+                                                               .outside = SF_ACCESS_STORAGE_READ});
     pairs = kit_buffer(f->graph, "pairs", SF_TRANSIENT, sf_sort_bytes(tuning, capacity));
     kit_copy(f->graph, "fill", list, pairs);
     sorted = sf_sort_declare(f->graph,
-                             &(struct sf_sort_desc){.name = "sort", .capacity = capacity, .pairs = pairs, .count = count, .count_word = COUNT_WORD, .tuning = &f->tuning},
+                             &(struct sf_sort_desc){.name = "sort",
+                                                    .capacity = capacity,
+                                                    .pairs = pairs,
+                                                    .count = count,
+                                                    .count_word = COUNT_WORD,
+                                                    .tuning = &f->tuning},
                              &f->sort);
     f->out = kit_buffer(f->graph, "out", SF_READBACK, sf_graph_buffer_at(f->graph, sorted)->bytes);
     kit_copy(f->graph, "read", sorted, f->out);
     f->player = kit_player(gpu, f->graph, &f->plan);
     assert_int_equal(sf_gpu_buffer_create(gpu, "list", bytes, false, SF_ACCESS_TRANSFER_READ, NULL, &f->list), SF_OK);
-    assert_int_equal(sf_gpu_buffer_create(gpu, "count", 4 * COUNT_WORDS, false, SF_ACCESS_STORAGE_READ, NULL, &f->count), SF_OK);
+    assert_int_equal(
+        sf_gpu_buffer_create(gpu, "count", 4 * COUNT_WORDS, false, SF_ACCESS_STORAGE_READ, NULL, &f->count), SF_OK);
     sf_player_bind_buffer(f->player, list, f->list);
     sf_player_bind_buffer(f->player, count, f->count);
 }
@@ -82,14 +93,22 @@ static void check(const struct fixture *f, const struct sf_sort_pair *result, ui
     }
 }
 
-static const char *const KINDS[] = {"random", "all equal", "all greatest", "sorted", "reversed", "two keys", "mostly greatest", "third digit", "runs"};
+static const char *const KINDS[] = {"random",   "all equal",       "all greatest", "sorted", "reversed",
+                                    "two keys", "mostly greatest", "third digit",  "runs"};
 enum { KIND_COUNT = sizeof KINDS / sizeof *KINDS };
 
 static uint32_t key_of(uint32_t kind, uint32_t i, uint32_t count)
 {
     uint32_t random = sf_random_u32(count, i, kind);
-    const uint32_t keys[KIND_COUNT] = {
-        random, 0x01010101u, UINT32_MAX, i, count - i, random & 1 ? 0x80000000u : 0x7fffffffu, random % 5 ? UINT32_MAX : random, random & 0xff0000u, (i % 77) << 20};
+    const uint32_t keys[KIND_COUNT] = {random,
+                                       0x01010101u,
+                                       UINT32_MAX,
+                                       i,
+                                       count - i,
+                                       random & 1 ? 0x80000000u : 0x7fffffffu,
+                                       random % 5 ? UINT32_MAX : random,
+                                       random & 0xff0000u,
+                                       (i % 77) << 20};
 
     return keys[kind];
 }
@@ -137,14 +156,21 @@ static void test_as_tuned(void **state)
 
 static void test_blocks(void **state)
 {
-    /* groups, local, merge groups: one block; some runs without partners; two and three merges; subgroups less than workgroups and only partly filled */
-    static const uint32_t shapes[][3] = {{1, 8, 1}, {3, 8, 2}, {4, 1, 5}, {6, 64, 1}, {16, 8, 2}, {37, 5, 4}};
+    /* groups, local, merge groups, ways: one block; some runs without partners; two and three merges; subgroups less
+     * than workgroups and only partly filled */
+    static const uint32_t shapes[][4] = {{1, 8, 1, 4},  {3, 8, 2, 4}, {4, 1, 5, 4}, {6, 64, 1, 2},
+                                         {16, 8, 2, 4}, {2, 8, 1, 2}, {37, 5, 4, 4}};
     struct sf_gpu *gpu = kit_gpu(0);
 
     (void)state;
     for (size_t s = 0; s < sizeof shapes / sizeof *shapes; s++)
         for (int int64 = 0; int64 <= sf_gpu_tuning(gpu)->int64; int64++) {
-            const struct sf_sort_tuning tuning = {.blocks = true, .int64 = int64, .groups = shapes[s][0], .local = shapes[s][1], .merge_groups = shapes[s][2]};
+            const struct sf_sort_tuning tuning = {.blocks = true,
+                                                  .int64 = int64,
+                                                  .groups = shapes[s][0],
+                                                  .local = shapes[s][1],
+                                                  .merge_groups = shapes[s][2],
+                                                  .ways = shapes[s][3]};
             char what[64];
 
             snprintf(what, sizeof what, "%u blocks%s", tuning.groups, int64 ? " of words" : "");
@@ -191,8 +217,10 @@ static void sort_million(struct sf_gpu *gpu, const struct sf_sort_tuning *tuning
 static void test_million(void **state)
 {
     struct sf_gpu *gpu = kit_gpu(0);
-    const struct sf_gpu_tuning like_gpu = {
-        .subgroup_size = 32, .workers = 128, .max_group_invocations = 256, .shared_bytes = sf_gpu_tuning(gpu)->shared_bytes};
+    const struct sf_gpu_tuning like_gpu = {.subgroup_size = 32,
+                                           .workers = 128,
+                                           .max_group_invocations = 256,
+                                           .shared_bytes = sf_gpu_tuning(gpu)->shared_bytes};
     struct sf_sort_tuning tuning = tuned(gpu, 1 << 20);
 
     (void)state;
@@ -207,8 +235,9 @@ static void test_million(void **state)
 /* Keys made on the device from floats of every kind sort as `<` says, stably, with NaNs last. */
 static void test_floats(void **state)
 {
-    static const uint32_t edges[] = {0x7fc00000, 0xffc00001, 0x7f800001, 0x7f800000, 0xff800000, 0x00000000, 0x80000000, 0x00000001,
-                                     0x80000001, 0x80000000, 0x00000000, 0x7f7fffff, 0xff7fffff, 0x3f800000, 0xbf800000, 0x7fc00000};
+    static const uint32_t edges[] = {0x7fc00000, 0xffc00001, 0x7f800001, 0x7f800000, 0xff800000, 0x00000000,
+                                     0x80000000, 0x00000001, 0x80000001, 0x80000000, 0x00000000, 0x7f7fffff,
+                                     0xff7fffff, 0x3f800000, 0xbf800000, 0x7fc00000};
     enum { EDGES = sizeof edges / sizeof *edges, COUNT = 1000 };
     struct sf_gpu *gpu = kit_gpu(0);
     struct sf_graph *graph = kit_graph("floats");
@@ -227,21 +256,33 @@ static void test_floats(void **state)
     for (uint32_t i = 0; i < COUNT; i++)
         bits[i] = i % 3 ? edges[sf_random_u32(0, i, 0) % EDGES] : sf_random_u32(0, i, 1);
     memcpy(floats, bits, sizeof floats);
-    in = sf_graph_buffer(graph, &(struct sf_buffer_desc){.name = "floats", .lifetime = SF_IMPORTED, .bytes = sizeof floats, .outside = SF_ACCESS_STORAGE_READ});
-    counter = sf_graph_buffer(graph, &(struct sf_buffer_desc){.name = "count", .lifetime = SF_IMPORTED, .bytes = 4, .outside = SF_ACCESS_STORAGE_READ});
+    in = sf_graph_buffer(graph, &(struct sf_buffer_desc){.name = "floats",
+                                                         .lifetime = SF_IMPORTED,
+                                                         .bytes = sizeof floats,
+                                                         .outside = SF_ACCESS_STORAGE_READ});
+    counter = sf_graph_buffer(
+        graph, &(struct sf_buffer_desc){
+                   .name = "count", .lifetime = SF_IMPORTED, .bytes = 4, .outside = SF_ACCESS_STORAGE_READ});
     pairs = kit_buffer(graph, "pairs", SF_TRANSIENT, sf_sort_bytes(&tuning, COUNT));
-    sf_graph_pass(graph, &(struct sf_pass_desc){.name = "keys",
-                                                .kind = SF_PASS_COMPUTE,
-                                                .uses = (const struct sf_use[]){{.resource = in, .access = SF_ACCESS_STORAGE_READ, .binding = 0},
-                                                                                {.resource = pairs, .access = SF_ACCESS_STORAGE_WRITE, .binding = 1}},
-                                                .use_count = 2,
-                                                .shader = "test/sort_key.comp",
-                                                .groups = {(COUNT + 63) / 64, 1, 1}});
-    sorted = sf_sort_declare(graph, &(struct sf_sort_desc){.name = "sort", .capacity = COUNT, .pairs = pairs, .count = counter, .tuning = &tuning}, &sort);
+    sf_graph_pass(
+        graph,
+        &(struct sf_pass_desc){
+            .name = "keys",
+            .kind = SF_PASS_COMPUTE,
+            .uses = (const struct sf_use[]){{.resource = in, .access = SF_ACCESS_STORAGE_READ, .binding = 0},
+                                            {.resource = pairs, .access = SF_ACCESS_STORAGE_WRITE, .binding = 1}},
+            .use_count = 2,
+            .shader = "test/sort_key.comp",
+            .groups = {(COUNT + 63) / 64, 1, 1}});
+    sorted = sf_sort_declare(
+        graph,
+        &(struct sf_sort_desc){.name = "sort", .capacity = COUNT, .pairs = pairs, .count = counter, .tuning = &tuning},
+        &sort);
     out = kit_buffer(graph, "out", SF_READBACK, sf_graph_buffer_at(graph, sorted)->bytes);
     kit_copy(graph, "read", sorted, out);
     player = kit_player(gpu, graph, &plan);
-    assert_int_equal(sf_gpu_buffer_create(gpu, "floats", sizeof floats, false, SF_ACCESS_STORAGE_READ, bits, &buffers[0]), SF_OK);
+    assert_int_equal(
+        sf_gpu_buffer_create(gpu, "floats", sizeof floats, false, SF_ACCESS_STORAGE_READ, bits, &buffers[0]), SF_OK);
     assert_int_equal(sf_gpu_buffer_create(gpu, "count", 4, false, SF_ACCESS_STORAGE_READ, &count, &buffers[1]), SF_OK);
     sf_player_bind_buffer(player, in, buffers[0]);
     sf_player_bind_buffer(player, counter, buffers[1]);
