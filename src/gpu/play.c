@@ -208,7 +208,7 @@ static void record_barriers(struct sf_player *player, VkCommandBuffer commands, 
 
         if (number + i == player->dropped)
             continue;
-        if (barrier->discard && (before.writes || resource->image))
+        if (barrier->discard && before.writes)
             add_memory_barrier(&memory, &before, &after);
         if (resource->image) {
             VkImageLayout old = sf_vk_layout(barrier->before[0].access, resource->format);
@@ -241,7 +241,7 @@ static void record_barriers(struct sf_player *player, VkCommandBuffer commands, 
             };
         }
     }
-    dependency.memoryBarrierCount = memory.srcStageMask ? 1 : 0;
+    dependency.memoryBarrierCount = memory.srcAccessMask ? 1 : 0;
     if (dependency.memoryBarrierCount + dependency.bufferMemoryBarrierCount + dependency.imageMemoryBarrierCount > 0)
         player->gpu->vk.vkCmdPipelineBarrier2(commands, &dependency);
 }

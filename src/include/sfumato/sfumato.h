@@ -1,15 +1,15 @@
 /* sfumato: smoke, fire and clouds in real time with Vulkan. The whole public interface.
  *
- * Objects are opaque; `_create/_load` give one, `_destroy` takes a pointer to the pointer, nulls it, and accepts NULL. Every call that can fail
- * answers an enum sf_status and says why in the log. The library never prints, exits or aborts. Unless said otherwise a device and all that was made with
- * it belong to one thread at a time. Strings given back as `char **` are malloc'ed and the caller's.
+ * Objects are opaque; `_create/_load` give one, `_destroy` takes a pointer to the pointer, nulls it, and accepts NULL.
+ * Every call that can fail answers an enum sf_status and says why in the log. The library never prints, exits or
+ * aborts. Unless said otherwise a device and all that was made with it belong to one thread at a time. Strings given
+ * back as `char **` are malloc'ed and the caller's.
  *
- *     struct sf_device *device = NULL; struct sf_scene *scene = NULL; struct sf_renderer *renderer = NULL; uint64_t ticket;
- *     sf_device_create(&(struct sf_device_options){0}, &log, &device);
- *     sf_scene_load("scenes/plume.json", NULL, 0, &log, &scene);
- *     sf_renderer_create(device, scene, &(struct sf_renderer_options){.width = 800, .height = 800}, &log, &renderer);
- *     sf_renderer_render(renderer, 48, &ticket);
- *     struct sf_frame frame; sf_renderer_wait(renderer, ticket, &frame);   // frame.color: half RGBA
+ *     struct sf_device *device = NULL; struct sf_scene *scene = NULL; struct sf_renderer *renderer = NULL; uint64_t
+ * ticket; sf_device_create(&(struct sf_device_options){0}, &log, &device); sf_scene_load("scenes/plume.json", NULL, 0,
+ * &log, &scene); sf_renderer_create(device, scene, &(struct sf_renderer_options){.width = 800, .height = 800}, &log,
+ * &renderer); sf_renderer_render(renderer, 48, &ticket); struct sf_frame frame; sf_renderer_wait(renderer, ticket,
+ * &frame);   // frame.color: half RGBA
  */
 #ifndef SFUMATO_H
 #define SFUMATO_H
@@ -42,7 +42,8 @@ struct sf_device_options {
     uint64_t timeout_ns;   /* longest wait for the device; 0: 60 s */
     bool no_cache;         /* leave the pipeline cache on disk alone */
 };
-enum sf_status sf_device_create(const struct sf_device_options *options, const struct sf_log *log, struct sf_device **device);
+enum sf_status sf_device_create(const struct sf_device_options *options, const struct sf_log *log,
+                                struct sf_device **device);
 void sf_device_destroy(struct sf_device **device);
 void sf_device_describe(const struct sf_device *device, struct sf_device_info *info);
 uint32_t sf_device_validation_messages(const struct sf_device *device);
@@ -52,20 +53,21 @@ void sf_device_memory(const struct sf_device *device, uint64_t *used, uint64_t *
 
 struct sf_scene;
 /* `sets`: "group.key=value" strings over the file, such as "thick.steps=24". */
-enum sf_status sf_scene_load(const char *path, const char *const *sets, uint32_t set_count, const struct sf_log *log, struct sf_scene **scene);
-enum sf_status sf_scene_parse(const char *name, const char *text, size_t bytes, const char *const *sets, uint32_t set_count,
-                              const struct sf_log *log, struct sf_scene **scene);
+enum sf_status sf_scene_load(const char *path, const char *const *sets, uint32_t set_count, const struct sf_log *log,
+                             struct sf_scene **scene);
+enum sf_status sf_scene_parse(const char *name, const char *text, size_t bytes, const char *const *sets,
+                              uint32_t set_count, const struct sf_log *log, struct sf_scene **scene);
 void sf_scene_destroy(struct sf_scene **scene);
 struct sf_scene_info {
-    const char *path;    /* the scene's, as long as it lives */
-    const char *method;  /* name */
-    uint64_t hash;       /* of scene, sets and named files */
+    const char *path;   /* the scene's, as long as it lives */
+    const char *method; /* name */
+    uint64_t hash;      /* of scene, sets and named files */
     double fps;
-    uint32_t capacity;   /* particles */
+    uint32_t capacity; /* particles */
     uint32_t lights, objects, emitters, forces, meshes;
-    uint32_t listed;     /* explicit particles */
-    float exposure;      /* stops */
-    const char *tone;    /* name of the tone mapping for 8-bit output */
+    uint32_t listed;  /* explicit particles */
+    float exposure;   /* stops */
+    const char *tone; /* name of the tone mapping for 8-bit output */
 };
 void sf_scene_describe(const struct sf_scene *scene, struct sf_scene_info *info);
 
@@ -88,12 +90,14 @@ struct sf_renderer_options {
     bool no_readback;       /* nothing comes back but times (for measuring) */
 };
 /* The scene and device must outlive it. */
-enum sf_status sf_renderer_create(struct sf_device *device, const struct sf_scene *scene, const struct sf_renderer_options *options,
-                                  const struct sf_log *log, struct sf_renderer **renderer);
+enum sf_status sf_renderer_create(struct sf_device *device, const struct sf_scene *scene,
+                                  const struct sf_renderer_options *options, const struct sf_log *log,
+                                  struct sf_renderer **renderer);
 void sf_renderer_destroy(struct sf_renderer **renderer);
 
-/* Steps the simulation up to just before frame number `frame` (from the start when it lies behind): for long ways, so that a host can show
- * progress. `progress` (may be NULL) is called now and then with steps done and steps to do; false stops with SF_ERROR_INTERRUPTED. */
+/* Steps the simulation up to just before frame number `frame` (from the start when it lies behind): for long ways, so
+ * that a host can show progress. `progress` (may be NULL) is called now and then with steps done and steps to do; false
+ * stops with SF_ERROR_INTERRUPTED. */
 typedef bool (*sf_progress_fn)(void *user, uint64_t done, uint64_t total);
 enum sf_status sf_renderer_seek(struct sf_renderer *renderer, uint32_t frame, sf_progress_fn progress, void *user);
 /* Queues simulation up to and the picture of frame number `frame` (time frame/fps) and returns; *ticket names it. */
@@ -117,18 +121,20 @@ struct sf_frame {
 enum sf_status sf_renderer_wait(struct sf_renderer *renderer, uint64_t ticket, struct sf_frame *frame);
 
 struct sf_pass_timing {
-    const char *name;                    /* "thick.camera" */
-    uint64_t begin_ns, end_ns;           /* device clock */
-    uint64_t bytes_read, bytes_written;  /* as the graph says */
+    const char *name;                   /* "thick.camera" */
+    uint64_t begin_ns, end_ns;          /* device clock */
+    uint64_t bytes_read, bytes_written; /* as the graph says */
 };
-/* After sf_renderer_wait: every pass of that frame in order, simulation first. *timings stays the renderer's, until the next call. */
-enum sf_status sf_renderer_timings(struct sf_renderer *renderer, uint64_t ticket, const struct sf_pass_timing **timings, uint32_t *count);
+/* After sf_renderer_wait: every pass of that frame in order, simulation first. *timings stays the renderer's, until the
+ * next call. */
+enum sf_status sf_renderer_timings(struct sf_renderer *renderer, uint64_t ticket, const struct sf_pass_timing **timings,
+                                   uint32_t *count);
 /* CPU ns that the last sf_renderer_render took to record its passes, and how many they were. */
 uint64_t sf_renderer_record_ns(const struct sf_renderer *renderer, uint32_t *passes);
 
 /* The frame's compiled graph as "text", "dot" or "json"; needs no device. */
-enum sf_status sf_graph_print(const struct sf_scene *scene, uint32_t width, uint32_t height, uint32_t aovs, const char *format,
-                              const struct sf_log *log, char **text);
+enum sf_status sf_graph_print(const struct sf_scene *scene, uint32_t width, uint32_t height, uint32_t aovs,
+                              const char *format, const struct sf_log *log, char **text);
 
 /* ---- measuring ---- */
 
@@ -139,13 +145,15 @@ struct sf_ceilings {
     uint64_t bytes;           /* read plus written by each */
     double flops;             /* multiply-adds in a compute shader, counted as two, per second */
 };
-enum sf_status sf_measure_ceilings(struct sf_device *device, uint32_t width, uint32_t height, uint32_t repeats, const struct sf_log *log,
-                                   struct sf_ceilings *ceilings);
+enum sf_status sf_measure_ceilings(struct sf_device *device, uint32_t width, uint32_t height, uint32_t repeats,
+                                   const struct sf_log *log, struct sf_ceilings *ceilings);
 struct sf_sort_timing {
-    uint64_t gpu_min_ns, gpu_median_ns, cpu_min_ns, cpu_median_ns; /* cpu: a comparison sort of the same pairs on one thread */
-    bool correct; /* every timed run equalled the stable reference */
+    uint64_t gpu_min_ns, gpu_median_ns, cpu_min_ns,
+        cpu_median_ns; /* cpu: a comparison sort of the same pairs on one thread */
+    bool correct;      /* every timed run equalled the stable reference */
 };
-enum sf_status sf_measure_sort(struct sf_device *device, uint32_t pairs, uint32_t repeats, const struct sf_log *log, struct sf_sort_timing *timing);
+enum sf_status sf_measure_sort(struct sf_device *device, uint32_t pairs, uint32_t repeats, const struct sf_log *log,
+                               struct sf_sort_timing *timing);
 
 /* ---- pictures: the writers that the program uses; need no device ---- */
 
@@ -153,16 +161,20 @@ struct sf_exr_options {
     const char *compression; /* "none", "rle", "zips", "zip", "piz", "pxr24", "b44" */
     bool half;               /* color and smoke as half, else float; Z is always float */
     double fps;
-    const char *scene_hash;  /* hexadecimal, may be NULL */
+    const char *scene_hash; /* hexadecimal, may be NULL */
 };
-/* Layers R,G,B,A, Z and, when the frame has them, smoke.R,G,B,A, smoke.near, smoke.far, smoke.depth, smoke.T. Written whole or not at all. Any thread. */
-enum sf_status sf_frame_write_exr(const struct sf_frame *frame, const char *path, const struct sf_exr_options *options, const struct sf_log *log);
+/* Layers R,G,B,A, Z and, when the frame has them, smoke.R,G,B,A, smoke.near, smoke.far, smoke.depth, smoke.T. Written
+ * whole or not at all. Any thread. */
+enum sf_status sf_frame_write_exr(const struct sf_frame *frame, const char *path, const struct sf_exr_options *options,
+                                  const struct sf_log *log);
 /* 8-bit sRGB; `tone`: "linear", "reinhard", "aces", "neutral"; exposure in stops. Any thread. */
-enum sf_status sf_frame_write_png(const struct sf_frame *frame, const char *path, const char *tone, float exposure, const struct sf_log *log);
+enum sf_status sf_frame_write_png(const struct sf_frame *frame, const char *path, const char *tone, float exposure,
+                                  const struct sf_log *log);
 
 /* A frame list such as "1-100x2,150": malloc'ed, in order, without repeats. SF_ERROR_USAGE says where it goes wrong. */
 enum sf_status sf_frames_parse(const char *text, const struct sf_log *log, uint32_t **frames, size_t *count);
-/* "out/a.####.png" or "out/a.%04d.png" with the number put in. SF_ERROR_USAGE when the pattern has no place (or several) and `many`. */
+/* "out/a.####.png" or "out/a.%04d.png" with the number put in. SF_ERROR_USAGE when the pattern has no place (or
+ * several) and `many`. */
 enum sf_status sf_sequence_name(const char *pattern, uint32_t frame, bool many, const struct sf_log *log, char **path);
 
 #endif
