@@ -15,7 +15,7 @@ layout(set = 0, binding = 4) uniform sampler2D scene_depth;
 layout(set = 0, binding = 5) uniform sampler2D raw;
 layout(set = 0, binding = 6) uniform sampler2D blurred;
 layout(push_constant) uniform Push { sf_thick_push push; };
-layout(location = 0) flat in vec2 behind;
+layout(location = 0) flat in vec4 behind;
 layout(location = 0) out vec4 radiance;
 layout(location = 1) out vec4 depths;
 #include "thick/upsample.glsl"

@@ -7,13 +7,14 @@
 #include "lib/sphere.glsl"
 
 layout(constant_id = 0) const uint DETAIL = 0u;
+layout(constant_id = 1) const uint CUT = 0u; // as in camera.vert
 layout(set = 0, binding = 2) uniform sampler2D scene_depth;
 layout(set = 0, binding = 3) uniform sampler2D atlas;
-layout(push_constant) uniform Push { sf_thick_push push; };
 
 layout(location = 0) in vec4 ray;
 layout(location = 1) flat in vec4 sphere;
 layout(location = 2) flat in vec4 properties;
+layout(location = 3) flat in float detail;
 layout(location = 0) out vec4 result;
 
 void main()
@@ -24,10 +25,12 @@ void main()
         // The atlas dents the sphere: a thinner chord about the same middle.
         // Fetched, not filtered: the atlas is finer than the smoke's pixels, and a filtered look-up would double the pass's time on lavapipe.
         ivec2 at = ivec2(floor(ray.zw)) & (SF_THICK_ATLAS - 1);
-        chord.y *= 1.0 - push.detail * (1.0 - texelFetch(atlas, at, 0).r);
+        chord.y *= 1.0 - detail * (1.0 - texelFetch(atlas, at, 0).r);
     }
     float near = max(chord.x - chord.y, properties.z);
-    float far = min(chord.x + chord.y, texelFetch(scene_depth, ivec2(gl_FragCoord.xy), 0).r);
+    float far = chord.x + chord.y;
+    if (CUT != 0u)
+        far = min(far, texelFetch(scene_depth, ivec2(gl_FragCoord.xy), 0).r);
     float middle = 0.5 * (near + far);
     float reach = 0.5 * (far - near) * properties.w;
     bool hit = chord.y > 0.0 && far > near;

@@ -12,7 +12,7 @@ layout(set = 0, binding = 1, std430) readonly buffer Tiles { uint tiles[]; };
 layout(set = 0, binding = 8, std430) readonly buffer Mask { uint mask[]; };
 layout(set = 0, binding = 7, std430) readonly buffer Args { sf_thick_args args; };
 // View depth, m, beyond which there is no smoke, so that differences do not matter; and the difference in depth that does.
-layout(location = 0) flat out vec2 behind;
+layout(location = 0) flat out vec4 behind; // zw: from a pixel of the frame to 0..1 of the smoke's image
 layout(location = 1) flat out uint number;
 layout(push_constant) uniform Push { sf_thick_push push; };
 
@@ -23,7 +23,8 @@ void main()
     float margin = float(MARGIN);
     vec2 pixel = corner - margin + vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1) * (float(SF_THICK_TILE) + 2.0 * margin);
     vec2 size = TO_FRAME != 0u ? frame.size.xy / float(push.scale) : vec2(push.width, push.height);
-    behind = vec2(dot(args.centre.xyz - frame.eye.xyz, frame.forward.xyz) + args.centre.w, 0.1 * max(args.centre.w, 1e-4));
+    behind = vec4(dot(args.centre.xyz - frame.eye.xyz, frame.forward.xyz) + args.centre.w, 0.1 * max(args.centre.w, 1e-4),
+                  1.0 / (float(push.scale) * vec2(push.width, push.height)));
     number = tile;
     bool out_of_turn = CHOICE != 0u && (mask[tile] == SF_THICK_TILE_CUT) != (CHOICE == 2u);
     gl_Position = out_of_turn ? vec4(2.0, 2.0, 0.0, 1.0) : vec4(pixel / size * 2.0 - 1.0, 0.5, 1.0);

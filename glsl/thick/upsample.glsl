@@ -5,7 +5,7 @@
 // By the sampler, bilinear: where no surface stands before the smoke's back.
 vec4 upsample_plainly(sampler2D image, vec2 frame_pixel)
 {
-    return textureLod(image, frame_pixel / (float(SCALE) * vec2(textureSize(image, 0))), 0.0);
+    return textureLod(image, frame_pixel * behind.zw, 0.0);
 }
 
 // The four nearest smoke pixels, weighted by distance and by how well the depth at which they were cut off agrees with this pixel's (joint

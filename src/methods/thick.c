@@ -231,8 +231,8 @@ static void add_tiles(struct sf_method_frame *frame, struct sf_thick *thick)
                                                 .groups = {1, 1, 1}});
 }
 
-/* Empties the targets where smoke will be, and draws the spheres into the near/far/life/depth target. */
-static void add_spheres(struct sf_method_frame *frame, struct sf_thick *thick)
+/* Empties the targets where smoke will be, and takes the scene's depth down. */
+static void add_prepare(struct sf_method_frame *frame, struct sf_thick *thick)
 {
     struct sf_graph *graph = frame->graph;
     const struct sf_use prepare[] = {
@@ -258,26 +258,33 @@ static void add_spheres(struct sf_method_frame *frame, struct sf_thick *thick)
                                                 .indirect = thick->args,
                                                 .indirect_offset = SF_THICK_DRAW_TILES_OFFSET,
                                                 .raster = {.triangle_strip = true}});
-    const struct sf_use camera[] = {
+}
+
+/* Draws the spheres that a surface may cut off (`cut`), or the others, into the near/far/life/depth target. */
+static void add_camera(struct sf_method_frame *frame, struct sf_thick *thick, const char *name, bool cut)
+{
+    const struct sf_use uses[] = {
         {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
         {.resource = frame->particles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
         {.resource = thick->smoke_depth, .access = SF_ACCESS_SAMPLED, .binding = 2},
         {.resource = thick->atlas, .access = SF_ACCESS_SAMPLED, .binding = 3},
+        {.resource = thick->mask, .access = SF_ACCESS_STORAGE_READ, .binding = 4},
         {.resource = thick->raw, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_KEEP},
     };
-    sf_graph_pass(graph, &(struct sf_pass_desc){.name = "thick.camera",
-                                                .kind = SF_PASS_RASTER,
-                                                .shader = "thick/camera.vert",
-                                                .fragment = "thick/camera.frag",
-                                                .uses = camera,
-                                                .use_count = SF_COUNT(camera),
-                                                .constants = {frame->scene->thick.detail > 0},
-                                                .constant_count = 1,
-                                                .push = &thick->push,
-                                                .push_bytes = sizeof thick->push,
-                                                .indirect = frame->counts,
-                                                .indirect_offset = SF_COUNTS_DRAW_OFFSET,
-                                                .raster = {.blend = {SF_BLEND_MIN_ADD}, .triangle_strip = true}});
+    sf_graph_pass(frame->graph,
+                  &(struct sf_pass_desc){.name = name,
+                                         .kind = SF_PASS_RASTER,
+                                         .shader = "thick/camera.vert",
+                                         .fragment = "thick/camera.frag",
+                                         .uses = uses,
+                                         .use_count = SF_COUNT(uses),
+                                         .constants = {frame->scene->thick.detail > 0, cut},
+                                         .constant_count = 2,
+                                         .push = &thick->push,
+                                         .push_bytes = sizeof thick->push,
+                                         .indirect = frame->counts,
+                                         .indirect_offset = SF_COUNTS_DRAW_OFFSET,
+                                         .raster = {.blend = {SF_BLEND_MIN_ADD}, .triangle_strip = true}});
 }
 
 static void add_march(struct sf_method_frame *frame, struct sf_thick *thick)
@@ -398,7 +405,9 @@ enum sf_status sf_thick_view(struct sf_method_frame *frame, void *state, const s
                                                       .size = {.width = SF_THICK_ATLAS, .height = SF_THICK_ATLAS},
                                                       .outside = SF_ACCESS_SAMPLED});
     add_tiles(frame, thick);
-    add_spheres(frame, thick);
+    add_prepare(frame, thick);
+    add_camera(frame, thick, "thick.camera", false);
+    add_camera(frame, thick, "thick.camera_cut", true);
     uint32_t radius = blur_radius(camera_sigma(frame->scene));
     sf_resource half_way = add_image(graph, "camera.half", SF_FORMAT_RGBA32F, width, height);
     thick->blurred = add_image(graph, "camera.map", SF_FORMAT_RGBA32F, width, height);
