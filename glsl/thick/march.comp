@@ -81,7 +81,7 @@ vec3 scattered_from(uint index, vec3 near, vec3 far, vec3 direction, float tau, 
     float size = float(push.cell_size);
     float left = float(index) * size;
     vec3 sum = vec3(0.0);
-    // A pixel without smoke takes no step; a loop is left when no lane is in it, where an `if` is not.
+    // A pixel without smoke takes no step: lavapipe leaves a loop when no lane is in it, where it would run the body of an `if`.
     for (uint i = 0u; i < steps; i++) {
         float u = (float(i) + 0.5) / float(STEPS);
         float s = opaque > 1e-4 ? -log(1.0 - u * opaque) / tau : u;

@@ -88,6 +88,19 @@ void sf_thick_update(const struct sf_method_frame *frame, void *state)
     blur_weights(settings->light_blur, thick->light_blur.weight);
 }
 
+/* A pass with thick's push constants. Transfers take none. */
+static void add_pass(struct sf_method_frame *frame, const struct sf_thick *thick, const struct sf_use *uses,
+                     uint32_t use_count, struct sf_pass_desc desc)
+{
+    desc.uses = uses;
+    desc.use_count = use_count;
+    if (desc.kind != SF_PASS_TRANSFER) {
+        desc.push = &thick->push;
+        desc.push_bytes = sizeof thick->push;
+    }
+    sf_graph_pass(frame->graph, &desc);
+}
+
 /* Both directions of the blur, images[0] -> images[1] -> images[2]; over the listed tiles when `tiles` is given, else
  * over the whole. */
 static void add_blur(struct sf_method_frame *frame, const struct sf_thick *thick, const char *const names[2],
@@ -138,7 +151,6 @@ enum sf_status sf_thick_light(struct sf_method_frame *frame, void *state, const 
     struct sf_thick *thick = state;
     struct sf_graph *graph = frame->graph;
     sf_thick_update(frame, thick);
-    const struct sf_thick_push *push = &thick->push;
     uint32_t width = thick->light_blur.width, height = thick->light_blur.height;
 
     thick->args = add_buffer(graph, "thick.args", sizeof(struct sf_thick_args));
@@ -153,14 +165,9 @@ enum sf_status sf_thick_light(struct sf_method_frame *frame, void *state, const 
         {.resource = frame->smoke_views, .access = SF_ACCESS_STORAGE_WRITE, .binding = 2},
         {.resource = thick->args, .access = SF_ACCESS_STORAGE_WRITE, .binding = 3},
     };
-    sf_graph_pass(graph, &(struct sf_pass_desc){.name = "thick.fit",
-                                                .kind = SF_PASS_COMPUTE,
-                                                .shader = "thick/fit.comp",
-                                                .uses = fit,
-                                                .use_count = SF_COUNT(fit),
-                                                .push = push,
-                                                .push_bytes = sizeof *push,
-                                                .groups = {1, 1, 1}});
+    add_pass(frame, thick, fit, SF_COUNT(fit),
+             (struct sf_pass_desc){
+                 .name = "thick.fit", .kind = SF_PASS_COMPUTE, .shader = "thick/fit.comp", .groups = {1, 1, 1}});
     const struct sf_use draw[] = {
         {.resource = frame->particles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
         {.resource = frame->counts, .access = SF_ACCESS_STORAGE_READ, .binding = 2},
@@ -171,17 +178,14 @@ enum sf_status sf_thick_light(struct sf_method_frame *frame, void *state, const 
          .load = SF_LOAD_CLEAR,
          .clear = {SF_DEPTH_FAR, SF_DEPTH_FAR, 1, 0}},
     };
-    sf_graph_pass(graph, &(struct sf_pass_desc){.name = "thick.light",
-                                                .kind = SF_PASS_RASTER,
-                                                .shader = "thick/light.vert",
-                                                .fragment = "thick/light.frag",
-                                                .uses = draw,
-                                                .use_count = SF_COUNT(draw),
-                                                .push = push,
-                                                .push_bytes = sizeof *push,
-                                                .indirect = thick->args,
-                                                .indirect_offset = SF_THICK_DRAW_LIGHT_OFFSET,
-                                                .raster = {.blend = {SF_BLEND_MIN_ADD}, .triangle_strip = true}});
+    add_pass(frame, thick, draw, SF_COUNT(draw),
+             (struct sf_pass_desc){.name = "thick.light",
+                                   .kind = SF_PASS_RASTER,
+                                   .shader = "thick/light.vert",
+                                   .fragment = "thick/light.frag",
+                                   .indirect = thick->args,
+                                   .indirect_offset = SF_THICK_DRAW_LIGHT_OFFSET,
+                                   .raster = {.blend = {SF_BLEND_MIN_ADD}, .triangle_strip = true}});
     const sf_resource images[] = {raw, half_way, frame->smoke_map};
     static const char *const names[] = {"thick.light_blur_x", "thick.light_blur_y"};
     add_blur(frame, thick, names, images, false, &thick->light_blur, blur_radius(frame->scene->thick.light_blur));
@@ -196,45 +200,33 @@ static void add_tiles(struct sf_method_frame *frame, struct sf_thick *thick)
     thick->mask = add_buffer(graph, "thick.mask", bytes);
     thick->tiles = add_buffer(graph, "thick.tile_list", bytes);
     const struct sf_use fill[] = {{.resource = thick->mask, .access = SF_ACCESS_TRANSFER_WRITE}};
-    sf_graph_pass(graph, &(struct sf_pass_desc){.name = "thick.unmark",
-                                                .kind = SF_PASS_TRANSFER,
-                                                .uses = fill,
-                                                .use_count = SF_COUNT(fill),
-                                                .transfer = SF_TRANSFER_FILL});
+    add_pass(frame, thick, fill, SF_COUNT(fill),
+             (struct sf_pass_desc){.name = "thick.unmark", .kind = SF_PASS_TRANSFER, .transfer = SF_TRANSFER_FILL});
     const struct sf_use mark[] = {
         {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
         {.resource = frame->particles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
         {.resource = frame->counts, .access = SF_ACCESS_STORAGE_READ, .binding = 2},
         {.resource = thick->mask, .access = SF_ACCESS_STORAGE_MODIFY, .binding = 3},
     };
-    sf_graph_pass(graph, &(struct sf_pass_desc){.name = "thick.mark",
-                                                .kind = SF_PASS_COMPUTE,
-                                                .shader = "thick/mark.comp",
-                                                .uses = mark,
-                                                .use_count = SF_COUNT(mark),
-                                                .push = &thick->push,
-                                                .push_bytes = sizeof thick->push,
-                                                .indirect = frame->counts,
-                                                .indirect_offset = SF_COUNTS_DISPATCH_OFFSET});
+    add_pass(frame, thick, mark, SF_COUNT(mark),
+             (struct sf_pass_desc){.name = "thick.mark",
+                                   .kind = SF_PASS_COMPUTE,
+                                   .shader = "thick/mark.comp",
+                                   .indirect = frame->counts,
+                                   .indirect_offset = SF_COUNTS_DISPATCH_OFFSET});
     const struct sf_use list[] = {
         {.resource = thick->mask, .access = SF_ACCESS_STORAGE_READ, .binding = 0},
         {.resource = thick->tiles, .access = SF_ACCESS_STORAGE_WRITE, .binding = 1},
         {.resource = thick->args, .access = SF_ACCESS_STORAGE_MODIFY, .binding = 2},
     };
-    sf_graph_pass(graph, &(struct sf_pass_desc){.name = "thick.tiles",
-                                                .kind = SF_PASS_COMPUTE,
-                                                .shader = "thick/tiles.comp",
-                                                .uses = list,
-                                                .use_count = SF_COUNT(list),
-                                                .push = &thick->push,
-                                                .push_bytes = sizeof thick->push,
-                                                .groups = {1, 1, 1}});
+    add_pass(frame, thick, list, SF_COUNT(list),
+             (struct sf_pass_desc){
+                 .name = "thick.tiles", .kind = SF_PASS_COMPUTE, .shader = "thick/tiles.comp", .groups = {1, 1, 1}});
 }
 
 /* Empties the targets where smoke will be, and takes the scene's depth down. */
 static void add_prepare(struct sf_method_frame *frame, struct sf_thick *thick)
 {
-    struct sf_graph *graph = frame->graph;
     const struct sf_use prepare[] = {
         {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
         {.resource = thick->tiles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
@@ -245,19 +237,16 @@ static void add_prepare(struct sf_method_frame *frame, struct sf_thick *thick)
         {.resource = thick->smoke, .access = SF_ACCESS_COLOR, .binding = 1, .load = SF_LOAD_DISCARD},
         {.resource = thick->smoke_depth, .access = SF_ACCESS_COLOR, .binding = 2, .load = SF_LOAD_DISCARD},
     };
-    sf_graph_pass(graph, &(struct sf_pass_desc){.name = "thick.prepare",
-                                                .kind = SF_PASS_RASTER,
-                                                .shader = "thick/tile.vert",
-                                                .fragment = "thick/prepare.frag",
-                                                .uses = prepare,
-                                                .use_count = SF_COUNT(prepare),
-                                                .constants = {1, 0},
-                                                .constant_count = 2,
-                                                .push = &thick->push,
-                                                .push_bytes = sizeof thick->push,
-                                                .indirect = thick->args,
-                                                .indirect_offset = SF_THICK_DRAW_TILES_OFFSET,
-                                                .raster = {.triangle_strip = true}});
+    add_pass(frame, thick, prepare, SF_COUNT(prepare),
+             (struct sf_pass_desc){.name = "thick.prepare",
+                                   .kind = SF_PASS_RASTER,
+                                   .shader = "thick/tile.vert",
+                                   .fragment = "thick/prepare.frag",
+                                   .constants = {1, 0},
+                                   .constant_count = 2,
+                                   .indirect = thick->args,
+                                   .indirect_offset = SF_THICK_DRAW_TILES_OFFSET,
+                                   .raster = {.triangle_strip = true}});
 }
 
 /* Draws the spheres that a surface may cut off (`cut`), or the others, into the near/far/life/depth target. */
@@ -271,20 +260,16 @@ static void add_camera(struct sf_method_frame *frame, struct sf_thick *thick, co
         {.resource = thick->mask, .access = SF_ACCESS_STORAGE_READ, .binding = 4},
         {.resource = thick->raw, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_KEEP},
     };
-    sf_graph_pass(frame->graph,
-                  &(struct sf_pass_desc){.name = name,
-                                         .kind = SF_PASS_RASTER,
-                                         .shader = "thick/camera.vert",
-                                         .fragment = "thick/camera.frag",
-                                         .uses = uses,
-                                         .use_count = SF_COUNT(uses),
-                                         .constants = {frame->scene->thick.detail > 0, cut},
-                                         .constant_count = 2,
-                                         .push = &thick->push,
-                                         .push_bytes = sizeof thick->push,
-                                         .indirect = frame->counts,
-                                         .indirect_offset = SF_COUNTS_DRAW_OFFSET,
-                                         .raster = {.blend = {SF_BLEND_MIN_ADD}, .triangle_strip = true}});
+    add_pass(frame, thick, uses, SF_COUNT(uses),
+             (struct sf_pass_desc){.name = name,
+                                   .kind = SF_PASS_RASTER,
+                                   .shader = "thick/camera.vert",
+                                   .fragment = "thick/camera.frag",
+                                   .constants = {frame->scene->thick.detail > 0, cut},
+                                   .constant_count = 2,
+                                   .indirect = frame->counts,
+                                   .indirect_offset = SF_COUNTS_DRAW_OFFSET,
+                                   .raster = {.blend = {SF_BLEND_MIN_ADD}, .triangle_strip = true}});
 }
 
 static void add_march(struct sf_method_frame *frame, struct sf_thick *thick)
@@ -305,20 +290,16 @@ static void add_march(struct sf_method_frame *frame, struct sf_thick *thick)
         {.resource = thick->smoke_depth, .access = SF_ACCESS_SAMPLED, .binding = 8},
         {.resource = thick->smoke, .access = SF_ACCESS_STORAGE_MODIFY, .binding = 9},
     };
-    sf_graph_pass(frame->graph,
-                  &(struct sf_pass_desc){.name = "thick.march",
-                                         .kind = SF_PASS_COMPUTE,
-                                         .shader = "thick/march.comp",
-                                         .uses = uses,
-                                         .use_count = SF_COUNT(uses),
-                                         .constants = {(uint32_t)settings->steps, frame->scene->light_count,
-                                                       settings->scene_shadow, (uint32_t)settings->octaves, positional,
-                                                       settings->soft > 0},
-                                         .constant_count = 6,
-                                         .push = &thick->push,
-                                         .push_bytes = sizeof thick->push,
-                                         .indirect = thick->args,
-                                         .indirect_offset = SF_THICK_DISPATCH_TILES_OFFSET});
+    add_pass(frame, thick, uses, SF_COUNT(uses),
+             (struct sf_pass_desc){.name = "thick.march",
+                                   .kind = SF_PASS_COMPUTE,
+                                   .shader = "thick/march.comp",
+                                   .constants = {(uint32_t)settings->steps, frame->scene->light_count,
+                                                 settings->scene_shadow, (uint32_t)settings->octaves, positional,
+                                                 settings->soft > 0},
+                                   .constant_count = 6,
+                                   .indirect = thick->args,
+                                   .indirect_offset = SF_THICK_DISPATCH_TILES_OFFSET});
 }
 
 /* `choice` as in tile.vert. */
@@ -328,26 +309,22 @@ static void add_over(struct sf_method_frame *frame, struct sf_thick *thick, cons
         {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
         {.resource = thick->tiles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
         {.resource = thick->smoke, .access = SF_ACCESS_SAMPLED, .binding = 2, .sampler = SF_SAMPLER_LINEAR},
-        {.resource = thick->smoke_depth, .access = SF_ACCESS_SAMPLED, .binding = 3, .sampler = SF_SAMPLER_LINEAR},
+        {.resource = thick->smoke_depth, .access = SF_ACCESS_SAMPLED, .binding = 3},
         {.resource = frame->depth, .access = SF_ACCESS_SAMPLED, .binding = 4},
         {.resource = thick->args, .access = SF_ACCESS_STORAGE_READ, .binding = 7},
         {.resource = thick->mask, .access = SF_ACCESS_STORAGE_READ, .binding = 8},
         {.resource = frame->color, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_KEEP},
     };
-    sf_graph_pass(frame->graph,
-                  &(struct sf_pass_desc){.name = name,
-                                         .kind = SF_PASS_RASTER,
-                                         .shader = "thick/tile.vert",
-                                         .fragment = "thick/over.frag",
-                                         .uses = uses,
-                                         .use_count = SF_COUNT(uses),
-                                         .constants = {0, 1, thick->push.scale, choice},
-                                         .constant_count = 4,
-                                         .push = &thick->push,
-                                         .push_bytes = sizeof thick->push,
-                                         .indirect = thick->args,
-                                         .indirect_offset = SF_THICK_DRAW_TILES_OFFSET,
-                                         .raster = {.blend = {SF_BLEND_PREMULTIPLIED}, .triangle_strip = true}});
+    add_pass(frame, thick, uses, SF_COUNT(uses),
+             (struct sf_pass_desc){.name = name,
+                                   .kind = SF_PASS_RASTER,
+                                   .shader = "thick/tile.vert",
+                                   .fragment = "thick/over.frag",
+                                   .constants = {0, 1, thick->push.scale, choice},
+                                   .constant_count = 4,
+                                   .indirect = thick->args,
+                                   .indirect_offset = SF_THICK_DRAW_TILES_OFFSET,
+                                   .raster = {.blend = {SF_BLEND_PREMULTIPLIED}, .triangle_strip = true}});
 }
 
 static void add_aovs(struct sf_method_frame *frame, struct sf_thick *thick)
@@ -358,7 +335,7 @@ static void add_aovs(struct sf_method_frame *frame, struct sf_thick *thick)
         {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
         {.resource = thick->tiles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
         {.resource = thick->smoke, .access = SF_ACCESS_SAMPLED, .binding = 2, .sampler = SF_SAMPLER_LINEAR},
-        {.resource = thick->smoke_depth, .access = SF_ACCESS_SAMPLED, .binding = 3, .sampler = SF_SAMPLER_LINEAR},
+        {.resource = thick->smoke_depth, .access = SF_ACCESS_SAMPLED, .binding = 3},
         {.resource = frame->depth, .access = SF_ACCESS_SAMPLED, .binding = 4},
         {.resource = thick->raw, .access = SF_ACCESS_SAMPLED, .binding = 5},
         {.resource = thick->blurred, .access = SF_ACCESS_SAMPLED, .binding = 6},
@@ -371,19 +348,16 @@ static void add_aovs(struct sf_method_frame *frame, struct sf_thick *thick)
          .load = SF_LOAD_CLEAR,
          .clear = {SF_DEPTH_FAR, SF_DEPTH_FAR, 0, 1}},
     };
-    sf_graph_pass(frame->graph, &(struct sf_pass_desc){.name = "thick.aovs",
-                                                       .kind = SF_PASS_RASTER,
-                                                       .shader = "thick/tile.vert",
-                                                       .fragment = "thick/aovs.frag",
-                                                       .uses = uses,
-                                                       .use_count = SF_COUNT(uses),
-                                                       .constants = {0, 1, thick->push.scale},
-                                                       .constant_count = 3,
-                                                       .push = &thick->push,
-                                                       .push_bytes = sizeof thick->push,
-                                                       .indirect = thick->args,
-                                                       .indirect_offset = SF_THICK_DRAW_TILES_OFFSET,
-                                                       .raster = {.triangle_strip = true}});
+    add_pass(frame, thick, uses, SF_COUNT(uses),
+             (struct sf_pass_desc){.name = "thick.aovs",
+                                   .kind = SF_PASS_RASTER,
+                                   .shader = "thick/tile.vert",
+                                   .fragment = "thick/aovs.frag",
+                                   .constants = {0, 1, thick->push.scale},
+                                   .constant_count = 3,
+                                   .indirect = thick->args,
+                                   .indirect_offset = SF_THICK_DRAW_TILES_OFFSET,
+                                   .raster = {.triangle_strip = true}});
 }
 
 enum sf_status sf_thick_view(struct sf_method_frame *frame, void *state, const struct sf_log *log)
