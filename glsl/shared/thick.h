@@ -5,10 +5,11 @@
 
 #define SF_THICK_TILE                                                                                                  \
     16 /* smoke pixels along a tile's edge: the unit in which the frame is cleared, blurred, marched */
-#define SF_THICK_BLUR_MAX  24 /* the blur's largest radius in pixels: a tile and its neighbours hold it */
-#define SF_THICK_TILES_MAX 65000 /* lavapipe ends an invocation's loops after 65,535 turns; thick/mark.comp takes one a tile */
-#define SF_THICK_TILE_CUT  3u  /* in the mask: smoke, and a surface of the scene before its back. 1: smoke only */
-#define SF_THICK_ATLAS     512 /* texels along the detail atlas, a power of two */
+#define SF_THICK_BLUR_MAX 24 /* the blur's largest radius in pixels: a tile and its neighbours hold it */
+#define SF_THICK_TILES_MAX                                                                                             \
+    65000 /* lavapipe ends an invocation's loops after 65,535 turns; thick/mark.comp takes one a tile */
+#define SF_THICK_TILE_CUT 3u  /* in the mask: smoke, and a surface of the scene before its back. 1: smoke only */
+#define SF_THICK_ATLAS    512 /* texels along the detail atlas, a power of two */
 
 struct sf_thick_push {
     SF_UINT(width); /* of the smoke's targets, px */
