@@ -177,9 +177,7 @@ static void write_descriptors(struct sf_player *player)
 
 /* ---- recording ---- */
 
-/* A discard may hand over memory that another resource used: its writes are made available by a barrier on all memory.
- * Images wait for reads in the same way: synchronization validation follows a chain of waits only where each covers the
- * same bytes, and the image in between may have been smaller. */
+/* A discard may hand over memory that another resource used: its writes are made available by a barrier on all memory. */
 static void add_memory_barrier(VkMemoryBarrier2 *memory, const struct sf_scope *before, const struct sf_scope *after)
 {
     memory->srcStageMask |= before->stages;

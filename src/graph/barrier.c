@@ -186,14 +186,20 @@ static void add_last_touches(const struct sf_compiler *compiler, sf_resource res
     add_touches(target, last.touches, last.touch_count);
 }
 
+/* The place of a transient: its memory, or only as much of it as its contents fill. */
+static uint64_t place_end(const struct sf_plan_resource *resource, bool contents)
+{
+    return resource->offset + (contents && resource->bytes < resource->size ? resource->bytes : resource->size);
+}
+
 /* Who had the byte at `at` last before `self` begins? `end` becomes the end of the stretch for which that is so. */
-static sf_resource last_holder(const struct sf_plan *plan, sf_resource self, uint64_t at, uint64_t *end)
+static sf_resource last_holder(const struct sf_plan *plan, sf_resource self, bool contents, uint64_t at, uint64_t *end)
 {
     const struct sf_plan_resource *me = &plan->resources[self - 1];
     uint64_t newest = me->last; /* itself, in the play before */
     sf_resource holder = self;
 
-    *end = me->offset + me->size;
+    *end = place_end(me, false);
     for (uint32_t r = 0; r < plan->resource_count; r++) {
         const struct sf_plan_resource *other = &plan->resources[r];
         uint64_t age;
@@ -202,10 +208,10 @@ static sf_resource last_holder(const struct sf_plan *plan, sf_resource self, uin
             continue;
         if (other->offset > at && other->offset < *end)
             *end = other->offset;
-        if (other->offset > at || other->offset + other->size <= at)
+        if (other->offset > at || place_end(other, contents) <= at)
             continue;
-        if (other->offset + other->size < *end)
-            *end = other->offset + other->size;
+        if (place_end(other, contents) < *end)
+            *end = place_end(other, contents);
         /* Passes counted from the start of the play before. */
         age = other->last + (other->last < me->first ? (uint64_t)plan->pass_count : 0);
         if (age > newest) {
@@ -223,8 +229,11 @@ static void transient_barriers(struct barriers *barriers, sf_resource resource)
     struct group holders = {0};
     uint64_t end;
 
-    for (uint64_t at = planned->offset; at < planned->offset + planned->size; at = end)
-        add_last_touches(compiler, last_holder(compiler->plan, resource, at, &end), &holders);
+    /* Rounding makes places larger than what is in them. A holder's wait for the one before it counts for the holder's
+     * own contents only (synchronization validation sees it so): behind their end, wait for the one before as well. */
+    for (int contents = 0; contents < 2; contents++)
+        for (uint64_t at = planned->offset; at < place_end(planned, contents); at = end)
+            add_last_touches(compiler, last_holder(compiler->plan, resource, contents, at, &end), &holders);
     emit(barriers, resource, &holders, &barriers->groups[0], true, true);
     emit_between(barriers, resource);
 }

@@ -125,9 +125,79 @@ static bool copy_pass(struct sf_graph *graph, struct sf_pass_desc *pass)
     return sf_array_reserve((void **)&graph->passes, graph->pass_count, &graph->pass_capacity, 1, sizeof *pass);
 }
 
+/* Fills the watched image, by way of a buffer, with the word that stands for no value. */
+static void fill_watched(struct sf_graph *graph, sf_resource image)
+{
+    enum sf_format format = graph->resources[image - 1].image.format;
+    bool halves = format == SF_FORMAT_R16F || format == SF_FORMAT_RG16F || format == SF_FORMAT_RGBA16F;
+    bool floats = format == SF_FORMAT_R32F || format == SF_FORMAT_RG32F || format == SF_FORMAT_RGBA32F;
+    uint64_t bytes = (sf_resource_bytes(graph, image) + 3) & ~(uint64_t)3;
+    /* Not in the transients' memory: synchronization validation follows buffers and images apart, and misses the waits
+     * of two images for each other when a buffer had their memory in between. */
+    sf_resource fill = sf_graph_buffer(
+        graph, &(struct sf_buffer_desc){.name = "watch.fill", .lifetime = SF_PERSISTENT, .bytes = bytes});
+    const struct sf_use filled = {.resource = fill, .access = SF_ACCESS_TRANSFER_WRITE};
+    const struct sf_use copied[] = {{.resource = fill, .access = SF_ACCESS_TRANSFER_READ},
+                                    {.resource = image, .access = SF_ACCESS_TRANSFER_WRITE}};
+
+    sf_graph_pass(graph, &(struct sf_pass_desc){.name = "watch.fill",
+                                                .kind = SF_PASS_TRANSFER,
+                                                .uses = &filled,
+                                                .use_count = 1,
+                                                .transfer = SF_TRANSFER_FILL,
+                                                .fill = floats   ? 0x7fc00000u
+                                                        : halves ? 0x7e007e00u
+                                                                 : 0});
+    sf_graph_pass(graph, &(struct sf_pass_desc){.name = "watch.copy",
+                                                .kind = SF_PASS_TRANSFER,
+                                                .uses = copied,
+                                                .use_count = 2,
+                                                .transfer = SF_TRANSFER_COPY});
+}
+
+/* Is this the transient that is watched? Depth images are cleared before they are drawn to anyway. */
+static bool is_watched(const struct sf_graph *graph, sf_resource resource)
+{
+    const struct sf_graph_resource *found;
+
+    if (!graph->watched || resource == 0 || resource > graph->resource_count)
+        return false;
+    found = sf_graph_get(graph, resource);
+    return found->is_image && found->lifetime == SF_TRANSIENT && found->image.format != SF_FORMAT_D32F &&
+           found->image.size.relative_to < resource && !strcmp(graph->watched, found->name);
+}
+
+/* The first pass that writes the watched image need not write all of it: makes it find the fill there, and keep it. */
+static void keep_watched(struct sf_graph *graph, const struct sf_pass_desc *pass, struct sf_use uses[SF_PASS_USES_MAX])
+{
+    for (uint32_t i = 0; i < pass->use_count; i++) {
+        bool attached = uses[i].access == SF_ACCESS_COLOR && uses[i].load == SF_LOAD_DISCARD;
+
+        if (!is_watched(graph, uses[i].resource))
+            continue;
+        graph->watched = NULL;
+        if (!attached && uses[i].access != SF_ACCESS_STORAGE_WRITE)
+            return;
+        fill_watched(graph, uses[i].resource);
+        if (attached)
+            uses[i].load = SF_LOAD_KEEP;
+        else
+            uses[i].access = SF_ACCESS_STORAGE_MODIFY;
+        return;
+    }
+}
+
+void sf_graph_watch(struct sf_graph *graph, const char *name)
+{
+    graph->watched = sf_arena_strdup(&graph->arena, name);
+    if (!graph->watched)
+        out_of_memory(graph);
+}
+
 void sf_graph_pass(struct sf_graph *graph, const struct sf_pass_desc *desc)
 {
     struct sf_pass_desc pass = *desc;
+    struct sf_use kept[SF_PASS_USES_MAX];
 
     if (graph->status)
         return;
@@ -148,6 +218,11 @@ void sf_graph_pass(struct sf_graph *graph, const struct sf_pass_desc *desc)
     if (pass.constant_count > SF_PASS_CONSTANTS_MAX) {
         keep_error(graph, "pass", pass.name, "has more constants than SF_PASS_CONSTANTS_MAX; pass some in `push`");
         return;
+    }
+    if (graph->watched && pass.use_count > 0) {
+        memcpy(kept, pass.uses, pass.use_count * sizeof *kept);
+        pass.uses = kept;
+        keep_watched(graph, &pass, kept);
     }
     if (!copy_pass(graph, &pass)) {
         out_of_memory(graph);

@@ -36,6 +36,7 @@ struct sf_graph {
     size_t pass_count, pass_capacity;
     enum sf_status status; /* the first error of the declarations, and its words */
     const char *error;
+    const char *watched; /* sf_graph_watch's, until the image's first use; NULL: none */
     struct sf_arena arena;
 };
 
