@@ -13,10 +13,19 @@ vec3 environment_blurred(vec3 normal)
     return max(sum, 0.0);
 }
 
+// 1 / sqrt(x) to 5e-6 of itself: two steps of Newton from a first guess off the exponent. Software devices divide and take roots slowly, and the
+// sky is large.
+float environment_inverse_root(float x)
+{
+    float r = uintBitsToFloat(0x5f375a86u - (floatBitsToUint(x) >> 1u));
+    r *= 1.5 - 0.5 * x * r * r;
+    return r * (1.5 - 0.5 * x * r * r);
+}
+
 // The gradient sky in direction `ray` (any length): from the horizon up to the zenith, and within 0.25 down to the ground.
 vec3 environment_gradient(vec3 ray, vec3 zenith, vec3 horizon, vec3 ground)
 {
-    float y = ray.y * inversesqrt(dot(ray, ray));
+    float y = ray.y * environment_inverse_root(dot(ray, ray));
     float part = clamp(y >= 0.0 ? y : -4.0 * y, 0.0, 1.0);
     return mix(horizon, y >= 0.0 ? zenith : ground, part * part * (3.0 - 2.0 * part));
 }

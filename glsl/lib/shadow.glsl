@@ -12,7 +12,7 @@ float shadow_share(bool perspective, vec4 at, float exponent, float cell, float 
     vec2 uv = clamp(perspective ? at.xy / at.w : at.xy, 0.0, 0.9999);
     vec2 texel = vec2(uv.x + cell, uv.y) * vec2(1.0 / cells, 1.0) * vec2(textureSize(shadow_map, 0));
     float first = texelFetch(shadow_map, ivec2(texel), 0).r;
-    float lit = min(first * exp(exponent * (0.5 - clamp(at.z, 0.0, 1.0))), 1.0);
+    float lit = min(first * exp(exponent * (0.5 - min(at.z, 1.0))), 1.0);
     return perspective && at.w <= 0.0 ? 1.0 : lit;
 }
 

@@ -33,22 +33,16 @@ bool hidden(vec3 ray)
     return nearest < own;
 }
 
-// Mean of the square wave (1 on even squares, -1 on odd) over `width` squares around `at`.
-vec2 square_wave(vec2 at, vec2 width)
+// The checker's share of the first albedo at squares `at`, averaged over the box (along the checker's own axes) that holds the pixel's footprint:
+// the product of two square waves (1 on even squares, -1 on odd), each averaged over the box's width.
+float checker(vec2 at, float inverse)
 {
-    vec2 wide = max(width, 1e-3);
-    vec2 low = abs(fract(0.5 * at - 0.25 * wide) - 0.5);
-    vec2 high = abs(fract(0.5 * at + 0.25 * wide) - 0.5);
-    return 2.0 * (low - high) / wide;
-}
-
-// The checker's share of the first albedo, averaged over the box (along the checker's own axes) that holds the pixel's footprint.
-float checker(float nearer)
-{
-    vec2 turn = square_ray / nearer; // a pixel to the side changes the depth as well
+    vec2 turn = square_ray * inverse; // a pixel to the side changes the depth as well
     vec2 right_step = square_pixel.xy - turn * square_eye.z, up_step = square_pixel.zw - turn * square_eye.w;
-    vec2 wave = square_wave(square_eye.xy + depth * square_ray, depth * (abs(right_step) + abs(up_step)));
-    return albedo.w > 0.0 ? 0.5 + 0.5 * wave.x * wave.y : 1.0;
+    vec2 width = max(depth * (abs(right_step) + abs(up_step)), 1e-3);
+    vec2 low = abs(fract(0.5 * at - 0.25 * width) - 0.5), high = abs(fract(0.5 * at + 0.25 * width) - 0.5);
+    vec2 rise = low - high;
+    return albedo.w > 0.0 ? 0.5 + 2.0 * rise.x * rise.y / (width.x * width.y) : 1.0;
 }
 
 void main()
@@ -56,7 +50,8 @@ void main()
     vec2 ndc = pixel_ndc(vec2(forward.w, right.w), gl_FragCoord.xy);
     vec3 ray = forward.xyz + ndc.x * right.xyz + ndc.y * up.xyz;
     float nearer = slope.z + ndc.x * slope.x + ndc.y * slope.y;
-    depth = slope.w / nearer;
+    float inverse = 1.0 / nearer;
+    depth = slope.w * inverse;
     if (!(nearer > 0.0 && depth >= up.w && depth < SF_DEPTH_FAR) || PLANES > 1u && hidden(ray))
         discard;
 
@@ -72,11 +67,11 @@ void main()
         vec3 irradiance = light_irradiance_of(light_kind(i), source, depth * ray, to_light);
         float share = max(dot(normal.xyz, to_light), 0.0) * INVERSE_PI;
         share *= object_share(i, depth * map_ray[i] + map_eye[i], normal.w);
-        share *= smoke_share(i, depth * smoke_ray[i] + smoke_eye[i].xyz, smoke_window[i]);
+        share *= smoke_share(i, depth * smoke_ray[i] + smoke_eye[i].xyz, window[i]);
         light += irradiance * share;
     }
     if (LIGHTS > NEAR)
         light += far_lights(NEAR, frame.eye.xyz + depth * ray, normal.xyz);
-    vec3 reflected = CHECKERED != 0u ? mix(albedo2.rgb, albedo.rgb, checker(nearer)) : albedo.rgb;
+    vec3 reflected = CHECKERED != 0u ? mix(albedo2.rgb, albedo.rgb, checker(square_eye.xy + depth * square_ray, inverse)) : albedo.rgb;
     color = vec4(reflected * light, 1.0);
 }

@@ -11,6 +11,6 @@ const uint NEAR = 2u;
     layout(location = 20) flat way vec4 map_eye[NEAR];           \
     layout(location = 22) noperspective way vec3 smoke_ray[NEAR]; \
     layout(location = 24) flat way vec4 smoke_eye[NEAR];         \
-    layout(location = 26) flat way vec4 smoke_window[NEAR];
+    layout(location = 26) flat way vec4 window[NEAR];
 
 #endif

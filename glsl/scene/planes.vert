@@ -44,7 +44,7 @@ void main()
     square_pixel = vec4(dot(row0.xyz, right_pixel), dot(row2.xyz, right_pixel), dot(row0.xyz, up_pixel), dot(row2.xyz, up_pixel)) * albedo.w;
 
     for (uint i = 0u; i < NEAR; i++) {
-        near_color[i] = near_position[i] = near_direction[i] = map_ray[i] = map_eye[i] = smoke_eye[i] = smoke_window[i] = vec4(0.0);
+        near_color[i] = near_position[i] = near_direction[i] = map_ray[i] = map_eye[i] = smoke_eye[i] = window[i] = vec4(0.0);
         smoke_ray[i] = vec3(0.0);
         if (i >= LIGHTS)
             continue;
@@ -59,7 +59,7 @@ void main()
         if ((SMOKE >> i & 1u) != 0u) {
             smoke_ray[i] = (views[i].view * vec4(ray, 0.0)).xyz;
             smoke_eye[i] = views[i].view * vec4(frame.eye.xyz, 1.0);
-            smoke_window[i] = views[i].info.y > 0.0 ? views[i].window : vec4(0.0, 0.0, -1.0, -1.0);
+            window[i] = smoke_window(i);
         }
     }
 }

@@ -2,7 +2,7 @@
 // Surfaces are Lambertian: L = albedo (1/pi sum_lights visibility E cos + SH(n)).
 //
 // On a software device each component that a fragment loads from a buffer costs about as much as ten multiplications, and one that the
-// vertex shader hands over flat costs nothing. So the passes of large surfaces get what the first lights need in that way (struct
+// vertex shader hands over flat costs next to nothing. So the passes of large surfaces get what the first lights need in that way (struct
 // near_light); the lights after them are read from the frame's block (far_lights).
 #ifndef SF_SCENE_SHADE_GLSL
 #define SF_SCENE_SHADE_GLSL
@@ -54,6 +54,13 @@ float object_share(uint i, vec4 at, float exponent)
     if ((SHADOWED >> i & 1u) == 0u)
         return 1.0;
     return shadow_share(light_kind(i) != SF_LIGHT_KIND_DIRECTIONAL, at, exponent, float(bitCount(SHADOWED & (1u << i) - 1u)), float(bitCount(SHADOWED)));
+}
+
+// The light's window on the smoke, or one that shows none of it when there is none. (Written without a branch: lavapipe compiles a
+// shader anew for every draw when a branch of it depends on a buffer's contents alone.)
+vec4 smoke_window(uint i)
+{
+    return mix(vec4(0.0, 0.0, -1.0, -1.0), views[i].window, views[i].info.y);
 }
 
 // Share of light `i` that the smoke lets through; `q`: the point as the light sees it.

@@ -21,8 +21,8 @@ void main()
     ground = frame.ground;
     if (ENVIRONMENT == 1u || ENVIRONMENT == 3u)
         horizon = frame.background;
-    if (ENVIRONMENT == 3u && frame.background.rgb == vec3(0.0))
-        up.w = 0.0; // nothing at all: for laying over another picture
+    if (ENVIRONMENT == 3u)
+        up.w = sign(dot(frame.background.rgb, vec3(1.0))); // black is nothing at all: for laying over another picture
 
     vec3 beyond = vec3(0.0, 0.0, 1.0); // everything
     if (PLANES == 1u) {

@@ -34,7 +34,7 @@ void hand_over_light()
         if ((SHADOWED & 1u) != 0u)
             map[k] = frame.lights[0].world_to_map * parts[k];
         if ((SMOKE & 1u) != 0u)
-            smoke[k] = vec4((views[0].view * parts[k]).xyz, views[0].info.y > 0.0 ? views[0].window[k] : k < 2u ? 0.0 : -1.0);
+            smoke[k] = vec4((views[0].view * parts[k]).xyz, smoke_window(0u)[k]);
     }
 }
 

@@ -25,9 +25,9 @@ struct sf_gpu_light {
     SF_VEC4(direction); /* xyz the way the light travels; w: cosine of the outer half angle */
     SF_VEC4(color);     /* rgb: irradiance (directional) or radiant intensity (point, spot); w: cosine of the inner half
                            angle */
-    SF_VEC4(shadow);    /* x: 1 when its shadow map is to be read; y: exponent; z, w: unused */
-    SF_MAT4(world_to_map); /* exponential shadow map: clip space of this light's cell, before the cell's offset; see
-                              light/shadow.glsl */
+    SF_VEC4(shadow);    /* x: 1 when its shadow map is to be read; y: exponent; z: its cell; w: 1 / number of cells */
+    SF_MAT4(world_to_map); /* exponential shadow map: to (u w, v w, depth, w), u and v in 0..1 of this light's cell, v
+                              down, depth 0..1 and not divided by w; see lib/shadow.glsl */
 };
 
 struct sf_gpu_frame {
@@ -44,10 +44,10 @@ struct sf_gpu_frame {
     SF_VEC4(emission);   /* rgb, per unit of extinction; w: unused */
     SF_VEC4(background); /* rgb when the environment is not visible; w: environment kind (0 sky, 1 color, 2 picture, 3
                             background) */
-    SF_VEC4(zenith);
-    SF_VEC4(horizon);
-    SF_VEC4(ground);
-    SF_VEC4(sh[9]); /* rgb: blurred environment, order-2 spherical harmonics (lib/environment.glsl evaluates) */
+    SF_VEC4(zenith);     /* the sky's, times its intensity; w: the intensity, for pictures */
+    SF_VEC4(horizon);    /* w: cosine of the rotation of pictures */
+    SF_VEC4(ground);     /* w: its sine */
+    SF_VEC4(sh[9]);      /* rgb: blurred environment, order-2 spherical harmonics (lib/environment.glsl evaluates) */
     SF_VEC4(ramp[SF_FRAME_RAMP]); /* rgb over life, evenly spaced from birth to death; w: unused */
     SF_UINT(light_count);
     SF_UINT(object_count);

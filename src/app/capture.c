@@ -66,6 +66,7 @@ static enum sf_status open_renderer(struct capture *capture)
                                           .height = arguments->size.height,
                                           .float_color = strcmp(arguments->type, "float") == 0,
                                           .aovs = arguments->aovs ? SF_AOV_SMOKE | SF_AOV_DEPTHS : 0,
+                                          .inspect = arguments->inspect,
                                           .frames_kept = capture->slots};
 
     return sf_renderer_create(capture->device, capture->scene, &options, sf_console_log(), &capture->renderer);
@@ -81,6 +82,7 @@ static enum sf_status open_encoder(struct capture *capture)
                                            .tone = arguments->tone ? arguments->tone : capture->info.tone,
                                            .exposure = arguments->exposure.given ? (float)arguments->exposure.value
                                                                                  : capture->info.exposure,
+                                           .inspected = arguments->inspect != NULL,
                                            .targets = capture->targets.items,
                                            .target_count = capture->targets.count};
 

@@ -56,6 +56,8 @@ static const struct sf_option capture_options[] = {
      .words = tones},
     {"exposure", 0, SF_OPTION_REAL, FIELD(exposure), .value = "STOPS", .doc = "for PNG files, not the scene's",
      .min = -32, .max = 32},
+    {"inspect", 0, SF_OPTION_TEXT, FIELD(inspect), .value = "IMAGE",
+     .doc = "write this image of the frame's graph (see sfumato graph), not the picture"},
     {"overwrite", 0, SF_OPTION_FLAG, FIELD(overwrite), .doc = "replace files that exist"},
     {"skip-existing", 0, SF_OPTION_FLAG, FIELD(skip_existing), .doc = "leave files that exist, and render the others"},
     {"threads", 0, SF_OPTION_NUMBER, FIELD(threads), .value = "N",

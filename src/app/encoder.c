@@ -33,6 +33,10 @@ struct sf_encoder {
 static enum sf_status write_file(const struct sf_encoder_settings *settings, const struct sf_frame *frame,
                                  enum sf_target_kind kind, const char *path)
 {
+    if (settings->inspected && kind == SF_TARGET_PNG)
+        return sf_frame_write_inspected_png(frame, path, sf_console_log());
+    if (settings->inspected)
+        return sf_frame_write_inspected_exr(frame, path, &settings->exr, sf_console_log());
     if (kind == SF_TARGET_PNG)
         return sf_frame_write_png(frame, path, settings->tone, settings->exposure, sf_console_log());
     return sf_frame_write_exr(frame, path, &settings->exr, sf_console_log());

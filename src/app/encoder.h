@@ -13,6 +13,7 @@ struct sf_encoder_settings {
     struct sf_exr_options exr;
     const char *tone;
     float exposure; /* stops */
+    bool inspected; /* write the inspected image and not the picture */
     const struct sf_target *targets;
     size_t target_count;
 };

@@ -41,6 +41,7 @@ struct sf_arguments {
     const char *type, *compression;
     const char *tone;                 /* NULL: the scene's */
     struct sf_argument_real exposure; /* stops; not given: the scene's */
+    const char *inspect;              /* an image of the graph in place of the picture, or NULL */
     bool overwrite, skip_existing;
     uint32_t threads; /* 0: by the number of cores */
     /* bench */

@@ -51,9 +51,9 @@ static bool object_bounds(const struct sf_scene *scene, const struct sf_object *
     const struct sf_mesh *mesh = object->kind == SF_OBJECT_MESH ? &scene->meshes[object->mesh] : NULL;
 
     for (int i = 0; i < 3; i++) {
-        double reach = object->kind == SF_OBJECT_BOX                   ? object->size[i] / 2.0
+        double reach = object->kind == SF_OBJECT_BOX                  ? object->size[i] / 2.0
                        : object->kind == SF_OBJECT_CYLINDER && i == 1 ? object->height / 2.0
-                                                                       : (double)object->radius;
+                                                                      : (double)object->radius;
         low[i] = mesh ? (double)mesh->min[i] * object->scale : -reach;
         high[i] = mesh ? (double)mesh->max[i] * object->scale : reach;
     }
@@ -215,7 +215,8 @@ void sf_shadow_fit(const struct sf_scene *scene, struct sf_shadow_cells *cells)
     for (uint32_t i = 0; i < scene->light_count && count > 0; i++) {
         const struct sf_light *light = &scene->lights[i];
         double rim = (blur_radius(scene->shadow.softness) + 1.0) * 2 / cells->size;
-        struct fit fit = {.scene = scene, .light = light, .corners = corners, .count = count, .share = fmax(1 - rim, 0.1)};
+        struct fit fit = {
+            .scene = scene, .light = light, .corners = corners, .count = count, .share = fmax(1 - rim, 0.1)};
         if (!light->shadows)
             continue;
         if (light->kind == SF_LIGHT_DIRECTIONAL)
@@ -351,8 +352,8 @@ static void declare_solids(struct sf_graph *graph, const struct sf_shadow_scene 
 }
 
 /* The nearest of mesh and what is there, by MIN: larger depths have larger exponentials. */
-static void declare_mesh(struct sf_graph *graph, const struct sf_shadow_scene *scene, const struct names *names, uint32_t number,
-                         const struct sf_mesh_push *push)
+static void declare_mesh(struct sf_graph *graph, const struct sf_shadow_scene *scene, const struct names *names,
+                         uint32_t number, const struct sf_mesh_push *push)
 {
     const struct sf_object *object = &scene->scene->objects[scene->from[push->object]];
     char name[32] = "shadow.mesh00";
@@ -410,8 +411,8 @@ static void declare_blur(struct sf_graph *graph, const struct names *names, cons
                                                 .transfer = SF_TRANSFER_COPY});
 }
 
-enum sf_status sf_shadow_declare(const struct sf_shadow_scene *scene, struct sf_shadow_pushes *pushes, const struct sf_log *log,
-                                 struct sf_graph **graph)
+enum sf_status sf_shadow_declare(const struct sf_shadow_scene *scene, struct sf_shadow_pushes *pushes,
+                                 const struct sf_log *log, struct sf_graph **graph)
 {
     struct names names = {0};
     enum sf_status status = sf_graph_create("shadow", log, graph);
@@ -478,13 +479,15 @@ enum sf_status sf_shadow_create(struct sf_gpu *gpu, const struct sf_shadow_scene
 
     *map = NULL;
     if (width > sf_gpu_info(gpu)->max_image_side)
-        status = sf_fail(log, SF_ERROR_SCENE,
-                         "shadow.map_size %u: the maps of %u lights side by side are wider than the device's limit of %u; lower it",
-                         scene->cells->size, scene->cells->count, sf_gpu_info(gpu)->max_image_side);
+        status = sf_fail(
+            log, SF_ERROR_SCENE,
+            "shadow.map_size %u: the maps of %u lights side by side are wider than the device's limit of %u; lower it",
+            scene->cells->size, scene->cells->count, sf_gpu_info(gpu)->max_image_side);
     else if (!pushes || !zeros)
         status = sf_fail(log, SF_ERROR_MEMORY, "shadow.map: out of memory");
     if (!status)
-        status = sf_gpu_image_create(gpu, "shadow.map", SF_FORMAT_R32F, width, height, 1, SF_ACCESS_SAMPLED, zeros, map);
+        status =
+            sf_gpu_image_create(gpu, "shadow.map", SF_FORMAT_R32F, width, height, 1, SF_ACCESS_SAMPLED, zeros, map);
     if (!status)
         status = sf_shadow_declare(scene, pushes, log, &graph);
     if (!status)

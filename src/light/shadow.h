@@ -13,11 +13,11 @@
 #include "shared/shadow.h"
 
 struct sf_shadow_cells {
-    uint32_t count;                 /* 0: nothing casts, and there is no map */
-    uint32_t size;                  /* px: edge of a cell */
-    uint32_t light[SF_LIGHTS_MAX];  /* of each cell */
+    uint32_t count;                /* 0: nothing casts, and there is no map */
+    uint32_t size;                 /* px: edge of a cell */
+    uint32_t light[SF_LIGHTS_MAX]; /* of each cell */
     struct sf_gpu_shadow_cell cell[SF_LIGHTS_MAX];
-    float bias[SF_LIGHTS_MAX];      /* in map depth: taken off the receiver's */
+    float bias[SF_LIGHTS_MAX]; /* in map depth: taken off the receiver's */
 };
 void sf_shadow_fit(const struct sf_scene *scene, struct sf_shadow_cells *cells);
 /* Sets `shadow` and `world_to_map` of the frame's lights. */
@@ -47,8 +47,8 @@ struct sf_shadow_pushes {
     struct sf_shadow_push blur;
     struct sf_mesh_push mesh[SF_OBJECTS_MAX];
 };
-enum sf_status sf_shadow_declare(const struct sf_shadow_scene *scene, struct sf_shadow_pushes *pushes, const struct sf_log *log,
-                                 struct sf_graph **graph);
+enum sf_status sf_shadow_declare(const struct sf_shadow_scene *scene, struct sf_shadow_pushes *pushes,
+                                 const struct sf_log *log, struct sf_graph **graph);
 /* Draws it and waits. The image rests in SF_ACCESS_SAMPLED; the caller destroys it. Not for cells->count 0. */
 enum sf_status sf_shadow_create(struct sf_gpu *gpu, const struct sf_shadow_scene *scene, const struct sf_log *log,
                                 struct sf_gpu_image **map);

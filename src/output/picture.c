@@ -1,6 +1,7 @@
 /* The public writers: a rendered frame to an EXR or a PNG file. */
 #include "sfumato/sfumato.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include "base/array.h"
 #include "base/log.h"
@@ -10,7 +11,7 @@
 #include "output/png.h"
 #include "output/tone.h"
 
-enum { CHANNELS_MAX = 13, ATTRIBUTES_MAX = 7 };
+enum { CHANNELS_MAX = 13, ATTRIBUTES_MAX = 7, WIDE = 16 };
 
 struct layers {
     const struct sf_frame *frame;
@@ -33,6 +34,24 @@ static void add_channels(struct layers *layers, const char *const *names, size_t
             .source = source,
             .stored = stored,
         };
+}
+
+/* No date and no host: the same frame has the same bytes wherever and whenever it is made. */
+static size_t fill_attributes(const struct sf_frame *frame, const struct sf_exr_options *options,
+                              struct sf_exr_attribute attributes[ATTRIBUTES_MAX])
+{
+    size_t count = 0;
+
+    attributes[count++] = sf_exr_text("software", "sfumato " SF_VERSION);
+    attributes[count++] = sf_exr_rec709();
+    attributes[count++] = sf_exr_integer("sfumatoFrame", (int32_t)frame->frame);
+    attributes[count++] = sf_exr_world_to_camera(frame->world_to_camera);
+    attributes[count++] = sf_exr_world_to_ndc(frame->world_to_clip);
+    if (options->fps > 0)
+        attributes[count++] = sf_exr_frames_per_second(options->fps);
+    if (options->scene_hash)
+        attributes[count++] = sf_exr_text("sfumatoSceneHash", options->scene_hash);
+    return count;
 }
 
 enum sf_status sf_frame_write_exr(const struct sf_frame *frame, const char *path, const struct sf_exr_options *options,
@@ -59,18 +78,30 @@ enum sf_status sf_frame_write_exr(const struct sf_frame *frame, const char *path
         add_channels(&layers, smoke, 4, frame->smoke, SF_EXR_HALF, stored);
     if (frame->smoke_depths)
         add_channels(&layers, depths, 4, frame->smoke_depths, SF_EXR_FLOAT, SF_EXR_FLOAT);
-    /* No date and no host: the same frame has the same bytes wherever and whenever it is made. */
-    attributes[exr.attribute_count++] = sf_exr_text("software", "sfumato " SF_VERSION);
-    attributes[exr.attribute_count++] = sf_exr_rec709();
-    attributes[exr.attribute_count++] = sf_exr_integer("sfumatoFrame", (int32_t)frame->frame);
-    attributes[exr.attribute_count++] = sf_exr_world_to_camera(frame->world_to_camera);
-    attributes[exr.attribute_count++] = sf_exr_world_to_ndc(frame->world_to_clip);
-    if (options->fps > 0)
-        attributes[exr.attribute_count++] = sf_exr_frames_per_second(options->fps);
-    if (options->scene_hash)
-        attributes[exr.attribute_count++] = sf_exr_text("sfumatoSceneHash", options->scene_hash);
+    exr.attribute_count = fill_attributes(frame, options, attributes);
     exr.channels = layers.channels;
     exr.channel_count = layers.count;
+    exr.attributes = attributes;
+    return sf_exr_write(path, &exr, log);
+}
+
+enum sf_status sf_frame_write_inspected_exr(const struct sf_frame *frame, const char *path,
+                                            const struct sf_exr_options *options, const struct sf_log *log)
+{
+    static const char *const names[] = {"R", "G", "B", "A"};
+    const struct sf_frame shape = {.width = frame->inspected_width, .height = frame->inspected_height};
+    struct layers layers = {.frame = &shape};
+    struct sf_exr_attribute attributes[ATTRIBUTES_MAX];
+    struct sf_exr_frame exr = {.width = shape.width, .height = shape.height, .channels = layers.channels};
+    enum sf_status status = sf_exr_compression_parse(options->compression, &exr.compression, log);
+
+    if (status != SF_OK)
+        return status;
+    if (!frame->inspected)
+        return sf_fail(log, SF_ERROR_USAGE, "cannot write '%s': the frame has no inspected image", path);
+    add_channels(&layers, names, frame->inspected_channels, frame->inspected, SF_EXR_FLOAT, SF_EXR_FLOAT);
+    exr.channel_count = layers.count;
+    exr.attribute_count = fill_attributes(frame, options, attributes);
     exr.attributes = attributes;
     return sf_exr_write(path, &exr, log);
 }
@@ -119,5 +150,61 @@ enum sf_status sf_frame_write_png(const struct sf_frame *frame, const char *path
     }
     free(bytes);
     free(row);
+    return status;
+}
+
+static bool shown(float value)
+{
+    return fabsf(value) < SF_NO_DEPTH; /* false for NaN */
+}
+
+/* One channel's values to 0..255; pixels whose first channel holds no value stay black. */
+static void encode_channel(const float *pixels, uint32_t channels, uint32_t channel, size_t count, uint8_t *to)
+{
+    float least = SF_NO_DEPTH, greatest = -SF_NO_DEPTH;
+
+    for (size_t i = 0; i < count; i++) {
+        float value = pixels[i * channels + channel];
+        if (shown(pixels[i * channels]) && shown(value)) {
+            least = fminf(least, value);
+            greatest = fmaxf(greatest, value);
+        }
+    }
+    bool negative = greatest < 0;
+    double low = negative ? -greatest : least, high = negative ? -least : greatest;
+    bool wide = low > 0 && high > WIDE * low; /* a floor up to its horizon */
+    double range = wide ? log(high / low) : high - low;
+    for (size_t i = 0; i < count; i++) {
+        double value = pixels[i * channels + channel], size = negative ? -value : value, part;
+
+        if (!shown(pixels[i * channels]) || !shown((float)value))
+            continue;
+        part = range > 0 ? (wide ? log(size / low) : size - low) / range : size != 0;
+        to[3 * i] = (uint8_t)(255.0 * fmin(fmax(part, 0.0), 1.0) + 0.5);
+    }
+}
+
+enum sf_status sf_frame_write_inspected_png(const struct sf_frame *frame, const char *path, const struct sf_log *log)
+{
+    uint32_t channels = frame->inspected_channels;
+    size_t pixels = (size_t)frame->inspected_width * frame->inspected_height;
+    struct sf_png_frame png = {
+        .width = frame->inspected_width, .height = frame->inspected_height, .channels = 3, .bits = 8};
+    enum sf_status status;
+    uint8_t *bytes;
+
+    if (!frame->inspected || png.width > SF_IMAGE_SIDE_MAX || png.height > SF_IMAGE_SIDE_MAX)
+        return sf_fail(log, SF_ERROR_USAGE, "cannot write '%s': the frame has no inspected image that fits", path);
+    bytes = calloc(pixels, 3);
+    if (!bytes)
+        return sf_fail(log, SF_ERROR_MEMORY, "cannot write '%s': out of memory", path);
+    for (uint32_t c = 0; c < 3; c++) {
+        uint32_t from = channels == 1 ? 0 : c;
+        if (from < channels)
+            encode_channel(frame->inspected, channels, from, pixels, bytes + c);
+    }
+    png.pixels = bytes;
+    status = sf_png_write(path, &png, log);
+    free(bytes);
     return status;
 }

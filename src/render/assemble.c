@@ -20,7 +20,8 @@ bool sf_scene_shows_picture(const struct sf_scene *scene)
     return scene->environment.visible && scene->environment.pixels;
 }
 
-static sf_resource import_image(struct sf_graph *graph, const char *name, enum sf_format format, uint32_t width, uint32_t height)
+static sf_resource import_image(struct sf_graph *graph, const char *name, enum sf_format format, uint32_t width,
+                                uint32_t height)
 {
     return sf_graph_image(graph, &(struct sf_image_desc){.name = name,
                                                          .format = format,
@@ -72,7 +73,8 @@ static void declare_inputs(struct sf_assembly *assembly, const struct sf_assembl
     method->particles = import_buffer(graph, "particles", options->capacity * sizeof(struct sf_particle), true);
     method->counts = import_buffer(graph, "counts", sizeof(struct sf_particle_counts), false);
     if (shadow->count > 0)
-        method->shadow_map = import_image(graph, "shadow.map", SF_FORMAT_R32F, shadow->size * shadow->count, shadow->size);
+        method->shadow_map =
+            import_image(graph, "shadow.map", SF_FORMAT_R32F, shadow->size * shadow->count, shadow->size);
     else
         method->shadow_map = blank(assembly);
     if (sf_scene_shows_picture(assembly->scene))
@@ -98,17 +100,14 @@ static void find_constants(struct parts *parts)
     }
     for (uint32_t i = 0; i < scene->object_count; i++)
         checkered |= scene->objects[i].kind == SF_OBJECT_PLANE && scene->objects[i].checker > 0;
-    uint32_t shown = !environment->visible ? 3 : sf_scene_shows_picture(scene) ? 2 : environment->kind == SF_ENVIRONMENT_SKY ? 0 : 1;
+    uint32_t shown = !environment->visible                     ? 3
+                     : sf_scene_shows_picture(scene)           ? 2
+                     : environment->kind == SF_ENVIRONMENT_SKY ? 0
+                                                               : 1;
     bool dims = assembly->method.smoke_map && (scene->method != SF_METHOD_THICK || scene->thick.ground_shadow);
     uint32_t level = !environment->pixels; /* sky and colour are the same all around */
-    const uint32_t constants[] = {assembly->list.planes,
-                                  scene->light_count,
-                                  kinds,
-                                  sf_shadow_mask(&assembly->shadow),
-                                  dims ? casts : 0,
-                                  checkered,
-                                  shown,
-                                  level};
+    const uint32_t constants[] = {assembly->list.planes, scene->light_count, kinds, sf_shadow_mask(&assembly->shadow),
+                                  dims ? casts : 0,      checkered,          shown, level};
     memcpy(parts->constants, constants, sizeof constants);
     parts->constant_count = sizeof constants / sizeof constants[0];
 }
@@ -134,7 +133,8 @@ static uint32_t shade_uses(struct parts *parts, struct sf_use uses[SHADE_USES])
 }
 
 /* The picture, the linear depth, and (for finite objects) the reversed z. */
-static uint32_t target_uses(const struct parts *parts, enum sf_load load, bool with_z, enum sf_load z_load, struct sf_use uses[3])
+static uint32_t target_uses(const struct parts *parts, enum sf_load load, bool with_z, enum sf_load z_load,
+                            struct sf_use uses[3])
 {
     const struct sf_method_frame *method = &parts->assembly->method;
 
@@ -266,16 +266,15 @@ static void declare_scene(struct sf_assembly *assembly)
 static sf_resource declare_readback(struct sf_assembly *assembly, const char *name, const char *pass, sf_resource from,
                                     uint64_t bytes)
 {
-    sf_resource to =
-        sf_graph_buffer(assembly->graph, &(struct sf_buffer_desc){.name = name, .lifetime = SF_READBACK, .bytes = bytes});
+    sf_resource to = sf_graph_buffer(assembly->graph,
+                                     &(struct sf_buffer_desc){.name = name, .lifetime = SF_READBACK, .bytes = bytes});
     const struct sf_use uses[] = {{.resource = from, .access = SF_ACCESS_TRANSFER_READ},
                                   {.resource = to, .access = SF_ACCESS_TRANSFER_WRITE}};
 
-    sf_graph_pass(assembly->graph, &(struct sf_pass_desc){.name = pass,
-                                                          .kind = SF_PASS_TRANSFER,
-                                                          .uses = uses,
-                                                          .use_count = 2,
-                                                          .transfer = SF_TRANSFER_COPY});
+    sf_graph_pass(
+        assembly->graph,
+        &(struct sf_pass_desc){
+            .name = pass, .kind = SF_PASS_TRANSFER, .uses = uses, .use_count = 2, .transfer = SF_TRANSFER_COPY});
     return to;
 }
 
@@ -295,7 +294,8 @@ static void declare_outputs(struct sf_assembly *assembly, const struct sf_assemb
     assembly->read_counts =
         declare_readback(assembly, "read.counts", "output.counts", method->counts, sizeof(struct sf_particle_counts));
     if (options->aovs & SF_AOV_SMOKE && method->aov_radiance)
-        assembly->read_smoke = declare_readback(assembly, "read.smoke", "output.smoke", method->aov_radiance, pixels * 8);
+        assembly->read_smoke =
+            declare_readback(assembly, "read.smoke", "output.smoke", method->aov_radiance, pixels * 8);
     if (options->aovs & SF_AOV_DEPTHS && method->aov_depths)
         assembly->read_depths =
             declare_readback(assembly, "read.smoke_depths", "output.smoke_depths", method->aov_depths, pixels * 16);
@@ -317,7 +317,8 @@ static void place_meshes(struct sf_assembly *assembly)
     buffers->index_bytes = (uint64_t)indices * sizeof(uint32_t);
 }
 
-static enum sf_status declare(struct sf_assembly *assembly, const struct sf_assembly_options *options, const struct sf_log *log)
+static enum sf_status declare(struct sf_assembly *assembly, const struct sf_assembly_options *options,
+                              const struct sf_log *log)
 {
     const struct sf_method_row *row = &sf_methods[assembly->scene->method];
     enum sf_status status = sf_graph_create("frame", log, &assembly->graph);
@@ -325,6 +326,7 @@ static enum sf_status declare(struct sf_assembly *assembly, const struct sf_asse
     if (status)
         return status;
     assembly->method.graph = assembly->graph;
+    sf_inspect_prepare(assembly->graph, options->inspect);
     declare_inputs(assembly, options);
     if (row->light)
         status = row->light(&assembly->method, assembly->state, log);
@@ -335,12 +337,14 @@ static enum sf_status declare(struct sf_assembly *assembly, const struct sf_asse
         status = row->view(&assembly->method, assembly->state, log);
     if (!status)
         declare_outputs(assembly, options);
+    if (!status && options->inspect)
+        status = sf_inspect_declare(assembly->graph, options->inspect, log, &assembly->inspected);
     return status;
 }
 
 enum sf_status sf_assembly_create(const struct sf_scene *scene, const struct sf_assembly_options *options,
-                                  const struct sf_gpu_tuning *tuning, const struct sf_plan_memory *memory, const struct sf_log *log,
-                                  struct sf_assembly **out)
+                                  const struct sf_gpu_tuning *tuning, const struct sf_plan_memory *memory,
+                                  const struct sf_log *log, struct sf_assembly **out)
 {
     const struct sf_method_row *row = &sf_methods[scene->method];
     struct sf_assembly *assembly = calloc(1, sizeof *assembly);
@@ -358,8 +362,11 @@ enum sf_status sf_assembly_create(const struct sf_scene *scene, const struct sf_
     assembly->width = options->width;
     assembly->height = options->height;
     assembly->float_color = options->float_color;
-    assembly->method = (struct sf_method_frame){
-        .scene = scene, .tuning = tuning, .width = options->width, .height = options->height, .want_aovs = options->aovs != 0};
+    assembly->method = (struct sf_method_frame){.scene = scene,
+                                                .tuning = tuning,
+                                                .width = options->width,
+                                                .height = options->height,
+                                                .want_aovs = options->aovs != 0};
     sf_object_list_fill(scene, &assembly->list);
     for (uint32_t i = 0; i < scene->object_count; i++)
         sf_object_fill(&scene->objects[assembly->list.from[i]], &assembly->objects[i]);

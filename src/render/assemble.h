@@ -4,6 +4,7 @@
 
 #include "light/shadow.h"
 #include "methods/method.h"
+#include "render/inspect.h"
 #include "render/uniforms.h"
 
 struct sf_assembly {
@@ -22,19 +23,22 @@ struct sf_assembly {
     sf_resource objects_upload;
     sf_resource environment, blank; /* imported images; 0 when not needed */
     sf_resource vertices, indices;  /* imported; 0 without meshes */
-    sf_resource read_color, read_depth, read_counts, read_smoke, read_depths; /* readback buffers; 0 when not asked for */
+    sf_resource read_color, read_depth, read_counts, read_smoke,
+        read_depths; /* readback buffers; 0 when not asked for */
+    struct sf_inspected inspected;
 };
 
 struct sf_assembly_options {
     uint32_t width, height;
     bool float_color, no_readback;
     uint32_t aovs;
-    uint32_t capacity; /* particles in the list */
+    uint32_t capacity;   /* particles in the list */
+    const char *inspect; /* an image of the graph that comes back as well, or NULL */
 };
 /* Declares and compiles. The scene must outlive it; `memory` may be NULL. */
 enum sf_status sf_assembly_create(const struct sf_scene *scene, const struct sf_assembly_options *options,
-                                  const struct sf_gpu_tuning *tuning, const struct sf_plan_memory *memory, const struct sf_log *log,
-                                  struct sf_assembly **assembly);
+                                  const struct sf_gpu_tuning *tuning, const struct sf_plan_memory *memory,
+                                  const struct sf_log *log, struct sf_assembly **assembly);
 void sf_assembly_destroy(struct sf_assembly **assembly);
 /* What the shadow map's graph needs of it; points into the assembly. */
 struct sf_shadow_scene sf_assembly_shadow(const struct sf_assembly *assembly);

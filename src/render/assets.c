@@ -14,10 +14,13 @@ static enum sf_status upload_meshes(struct sf_gpu *gpu, const struct sf_assembly
     enum sf_status status = SF_OK;
 
     *buffers = assembly->meshes;
-    if (buffers->vertex_bytes > sf_gpu_info(gpu)->max_storage_bytes || buffers->index_bytes > sf_gpu_info(gpu)->max_storage_bytes)
-        return sf_fail(log, SF_ERROR_SCENE, "the scene's meshes take %llu bytes of vertices and %llu of indices: this device binds at most %llu",
-                       (unsigned long long)buffers->vertex_bytes, (unsigned long long)buffers->index_bytes,
-                       (unsigned long long)sf_gpu_info(gpu)->max_storage_bytes);
+    if (buffers->vertex_bytes > sf_gpu_info(gpu)->max_storage_bytes ||
+        buffers->index_bytes > sf_gpu_info(gpu)->max_storage_bytes)
+        return sf_fail(
+            log, SF_ERROR_SCENE,
+            "the scene's meshes take %llu bytes of vertices and %llu of indices: this device binds at most %llu",
+            (unsigned long long)buffers->vertex_bytes, (unsigned long long)buffers->index_bytes,
+            (unsigned long long)sf_gpu_info(gpu)->max_storage_bytes);
     vertices = malloc(buffers->vertex_bytes);
     indices = malloc(buffers->index_bytes);
     if (!vertices || !indices)
@@ -32,8 +35,8 @@ static enum sf_status upload_meshes(struct sf_gpu *gpu, const struct sf_assembly
         memcpy(indices + buffers->first_index[i], mesh->indices, mesh->index_count * sizeof *indices);
     }
     if (!status)
-        status = sf_gpu_buffer_create(gpu, "mesh.vertices", buffers->vertex_bytes, false, SF_ACCESS_STORAGE_READ, vertices,
-                                      &buffers->vertices);
+        status = sf_gpu_buffer_create(gpu, "mesh.vertices", buffers->vertex_bytes, false, SF_ACCESS_STORAGE_READ,
+                                      vertices, &buffers->vertices);
     if (!status)
         status = sf_gpu_buffer_create(gpu, "mesh.indices", buffers->index_bytes, false, SF_ACCESS_STORAGE_READ, indices,
                                       &buffers->indices);
@@ -42,8 +45,8 @@ static enum sf_status upload_meshes(struct sf_gpu *gpu, const struct sf_assembly
     return status;
 }
 
-static enum sf_status upload_environment(struct sf_gpu *gpu, const struct sf_environment *environment, const struct sf_log *log,
-                                         struct sf_gpu_image **image)
+static enum sf_status upload_environment(struct sf_gpu *gpu, const struct sf_environment *environment,
+                                         const struct sf_log *log, struct sf_gpu_image **image)
 {
     size_t pixels = (size_t)environment->width * environment->height;
     uint16_t *halves = malloc(pixels * 4 * sizeof *halves);
@@ -62,7 +65,8 @@ static enum sf_status upload_environment(struct sf_gpu *gpu, const struct sf_env
     return status;
 }
 
-enum sf_status sf_assets_init(struct sf_gpu *gpu, const struct sf_assembly *assembly, const struct sf_log *log, struct sf_assets *assets)
+enum sf_status sf_assets_init(struct sf_gpu *gpu, const struct sf_assembly *assembly, const struct sf_log *log,
+                              struct sf_assets *assets)
 {
     const uint16_t zeros[4] = {0};
     enum sf_status status = SF_OK;
@@ -73,7 +77,8 @@ enum sf_status sf_assets_init(struct sf_gpu *gpu, const struct sf_assembly *asse
     if (!status && assembly->environment)
         status = upload_environment(gpu, &assembly->scene->environment, log, &assets->environment);
     if (!status && assembly->blank)
-        status = sf_gpu_image_create(gpu, "blank", SF_FORMAT_RGBA16F, 1, 1, 1, SF_ACCESS_SAMPLED, zeros, &assets->blank);
+        status =
+            sf_gpu_image_create(gpu, "blank", SF_FORMAT_RGBA16F, 1, 1, 1, SF_ACCESS_SAMPLED, zeros, &assets->blank);
     if (!status && assembly->shadow.count > 0) {
         struct sf_shadow_scene shadow = sf_assembly_shadow(assembly);
         shadow.buffers = &assets->meshes;

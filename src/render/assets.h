@@ -11,7 +11,8 @@ struct sf_assets {
     void *method;
 };
 /* Uploads what the assembly imports, and draws the shadow map. `assets` holds zeros before; finish it also after a failure. */
-enum sf_status sf_assets_init(struct sf_gpu *gpu, const struct sf_assembly *assembly, const struct sf_log *log, struct sf_assets *assets);
+enum sf_status sf_assets_init(struct sf_gpu *gpu, const struct sf_assembly *assembly, const struct sf_log *log,
+                              struct sf_assets *assets);
 void sf_assets_bind(struct sf_assets *assets, const struct sf_assembly *assembly, struct sf_player *player);
 void sf_assets_finish(struct sf_assets *assets);
 

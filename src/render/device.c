@@ -26,7 +26,8 @@ _Static_assert(sizeof((struct sf_device_info *)0)->name == sizeof((struct sf_gpu
                    sizeof((struct sf_device_info *)0)->driver == sizeof((struct sf_gpu_info *)0)->driver &&
                    sizeof((struct sf_device_info *)0)->uuid == sizeof((struct sf_gpu_info *)0)->uuid &&
                    sizeof((struct sf_device_info *)0)->kind == sizeof((struct sf_gpu_info *)0)->kind &&
-                   sizeof((struct sf_device_info *)0)->unsuitable_because == sizeof((struct sf_gpu_info *)0)->unsuitable_because,
+                   sizeof((struct sf_device_info *)0)->unsuitable_because ==
+                       sizeof((struct sf_gpu_info *)0)->unsuitable_because,
                "the two infos agree");
 
 enum sf_status sf_device_list(const struct sf_log *log, struct sf_device_info **infos, uint32_t *count)
@@ -50,7 +51,8 @@ enum sf_status sf_device_list(const struct sf_log *log, struct sf_device_info **
     return status;
 }
 
-enum sf_status sf_device_create(const struct sf_device_options *options, const struct sf_log *log, struct sf_device **device)
+enum sf_status sf_device_create(const struct sf_device_options *options, const struct sf_log *log,
+                                struct sf_device **device)
 {
     const struct sf_gpu_options gpu_options = {.device = options->device,
                                                .validate = options->validate,

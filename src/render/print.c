@@ -69,12 +69,12 @@ static enum sf_status parse_format(const char *name, const struct sf_log *log, e
         }
     }
     const char *near = sf_suggest(name, FORMATS, SF_COUNT(FORMATS));
-    return sf_fail(log, SF_ERROR_USAGE, "unknown graph format '%s'; %s%s%sthere are text, dot and json", name, near ? "did you mean '" : "",
-                   near ? near : "", near ? "'? " : "");
+    return sf_fail(log, SF_ERROR_USAGE, "unknown graph format '%s'; %s%s%sthere are text, dot and json", name,
+                   near ? "did you mean '" : "", near ? near : "", near ? "'? " : "");
 }
 
-enum sf_status sf_graph_print(const struct sf_scene *scene, uint32_t width, uint32_t height, uint32_t aovs, const char *format,
-                              const struct sf_log *log, char **text)
+enum sf_status sf_graph_print(const struct sf_scene *scene, uint32_t width, uint32_t height, uint32_t aovs,
+                              const char *format, const struct sf_log *log, char **text)
 {
     struct printer printer = {.scene = scene, .log = log};
     const struct sf_assembly_options options = {
@@ -84,7 +84,8 @@ enum sf_status sf_graph_print(const struct sf_scene *scene, uint32_t width, uint
 
     *text = NULL;
     if (!status && (width == 0 || height == 0))
-        status = sf_fail(log, SF_ERROR_USAGE, "a frame of %ux%u has no pixels; width and height are at least 1", width, height);
+        status = sf_fail(log, SF_ERROR_USAGE, "a frame of %ux%u has no pixels; width and height are at least 1", width,
+                         height);
     if (!status)
         status = sf_assembly_create(scene, &options, &DEFAULT_TUNING, NULL, log, &assembly);
     if (!status) {

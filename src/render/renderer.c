@@ -33,8 +33,10 @@ struct sf_renderer {
     struct sf_assembly *assembly;
     struct sf_assets assets;
     struct sf_player *player;
-    struct queued queued[TICKETS]; /* by ticket */
-    uint64_t tickets;              /* given so far */
+    struct queued queued[TICKETS];     /* by ticket */
+    uint64_t tickets;                  /* given so far */
+    float *inspected[FRAMES_KEPT_MAX]; /* by ticket; NULL until the first is asked for */
+    uint64_t inspected_ticket[FRAMES_KEPT_MAX];
     struct sf_pass_timing *timings;
     uint64_t record_ns;
     uint32_t recorded; /* passes */
@@ -42,18 +44,22 @@ struct sf_renderer {
 
 /* ---- making ---- */
 
-static enum sf_status check_options(const struct sf_device *device, const struct sf_renderer_options *options, const struct sf_log *log)
+static enum sf_status check_options(const struct sf_device *device, const struct sf_renderer_options *options,
+                                    const struct sf_log *log)
 {
     uint32_t limit = sf_gpu_info(device->gpu)->max_image_side;
 
     if (options->width == 0 || options->height == 0)
-        return sf_fail(log, SF_ERROR_USAGE, "a frame of %ux%u has no pixels; width and height are at least 1", options->width,
-                       options->height);
+        return sf_fail(log, SF_ERROR_USAGE, "a frame of %ux%u has no pixels; width and height are at least 1",
+                       options->width, options->height);
     if (options->width > limit || options->height > limit)
-        return sf_fail(log, SF_ERROR_USAGE, "a frame of %ux%u is too large: '%s' takes at most %u along a side", options->width,
-                       options->height, sf_gpu_info(device->gpu)->name, limit);
+        return sf_fail(log, SF_ERROR_USAGE, "a frame of %ux%u is too large: '%s' takes at most %u along a side",
+                       options->width, options->height, sf_gpu_info(device->gpu)->name, limit);
     if (options->frames_kept > FRAMES_KEPT_MAX)
-        return sf_fail(log, SF_ERROR_USAGE, "frames_kept is %u; it can be 1 to %d, or 0 for 2", options->frames_kept, FRAMES_KEPT_MAX);
+        return sf_fail(log, SF_ERROR_USAGE, "frames_kept is %u; it can be 1 to %d, or 0 for 2", options->frames_kept,
+                       FRAMES_KEPT_MAX);
+    if (options->inspect && options->no_readback)
+        return sf_fail(log, SF_ERROR_USAGE, "inspecting '%s' needs what no_readback leaves out", options->inspect);
     return SF_OK;
 }
 
@@ -70,8 +76,10 @@ static enum sf_status create_parts(struct sf_renderer *renderer)
                                                 .float_color = renderer->options.float_color,
                                                 .no_readback = renderer->options.no_readback,
                                                 .aovs = renderer->options.aovs,
+                                                .inspect = renderer->options.inspect,
                                                 .capacity = sf_particles_capacity(renderer->particles)};
-    status = sf_assembly_create(renderer->scene, &options, sf_gpu_tuning(gpu), &memory, renderer->log, &renderer->assembly);
+    status =
+        sf_assembly_create(renderer->scene, &options, sf_gpu_tuning(gpu), &memory, renderer->log, &renderer->assembly);
     if (!status)
         status = sf_assets_init(gpu, renderer->assembly, renderer->log, &renderer->assets);
     if (!status)
@@ -79,21 +87,25 @@ static enum sf_status create_parts(struct sf_renderer *renderer)
     if (status)
         return status;
     sf_assets_bind(&renderer->assets, renderer->assembly, renderer->player);
-    sf_player_bind_buffer(renderer->player, renderer->assembly->method.particles, sf_particles_list(renderer->particles));
-    sf_player_bind_buffer(renderer->player, renderer->assembly->method.counts, sf_particles_counts(renderer->particles));
+    sf_player_bind_buffer(renderer->player, renderer->assembly->method.particles,
+                          sf_particles_list(renderer->particles));
+    sf_player_bind_buffer(renderer->player, renderer->assembly->method.counts,
+                          sf_particles_counts(renderer->particles));
     sf_player_set_readback_depth(renderer->player, renderer->options.frames_kept);
     if (renderer->options.timing) {
         sf_player_set_timing(renderer->player, true);
         sf_player_set_timing(sf_particles_player(renderer->particles), true);
         sf_player_set_readback_depth(sf_particles_player(renderer->particles), renderer->options.frames_kept);
     }
-    renderer->timings = calloc(sf_particles_plan(renderer->particles)->pass_count + renderer->assembly->plan->pass_count,
-                               sizeof *renderer->timings);
+    renderer->timings =
+        calloc(sf_particles_plan(renderer->particles)->pass_count + renderer->assembly->plan->pass_count,
+               sizeof *renderer->timings);
     return renderer->timings ? SF_OK : sf_fail(renderer->log, SF_ERROR_MEMORY, "renderer: out of memory");
 }
 
-enum sf_status sf_renderer_create(struct sf_device *device, const struct sf_scene *scene, const struct sf_renderer_options *options,
-                                  const struct sf_log *log, struct sf_renderer **out)
+enum sf_status sf_renderer_create(struct sf_device *device, const struct sf_scene *scene,
+                                  const struct sf_renderer_options *options, const struct sf_log *log,
+                                  struct sf_renderer **out)
 {
     struct sf_renderer *renderer;
     enum sf_status status = check_options(device, options, log);
@@ -111,6 +123,7 @@ enum sf_status sf_renderer_create(struct sf_device *device, const struct sf_scen
     if (options->frames_kept == 0)
         renderer->options.frames_kept = 2;
     status = create_parts(renderer);
+    renderer->options.inspect = NULL; /* the caller's, who may free it now */
     if (status)
         sf_renderer_destroy(&renderer);
     *out = renderer;
@@ -127,6 +140,8 @@ void sf_renderer_destroy(struct sf_renderer **out)
     sf_assets_finish(&renderer->assets);
     sf_assembly_destroy(&renderer->assembly);
     sf_particles_destroy(&renderer->particles);
+    for (int i = 0; i < FRAMES_KEPT_MAX; i++)
+        free(renderer->inspected[i]);
     free(renderer->timings);
     free(renderer);
     *out = NULL;
@@ -267,18 +282,44 @@ static const struct queued *find(const struct sf_renderer *renderer, uint64_t ti
     bool kept = ticket > 0 && ticket <= renderer->tickets && renderer->tickets - ticket < renderer->options.frames_kept;
 
     if (!kept)
-        sf_fail(renderer->log, SF_ERROR_USAGE, "ticket %llu: the last frame queued has %llu, and %u are kept", (unsigned long long)ticket,
-                (unsigned long long)renderer->tickets, renderer->options.frames_kept);
+        sf_fail(renderer->log, SF_ERROR_USAGE, "ticket %llu: the last frame queued has %llu, and %u are kept",
+                (unsigned long long)ticket, (unsigned long long)renderer->tickets, renderer->options.frames_kept);
     return kept ? &renderer->queued[ticket % TICKETS] : NULL;
 }
 
-static const void *read_back(struct sf_renderer *renderer, sf_resource resource, uint64_t serial, enum sf_status *status)
+static const void *read_back(struct sf_renderer *renderer, sf_resource resource, uint64_t serial,
+                             enum sf_status *status)
 {
     const void *data = resource ? sf_player_readback(renderer->player, resource, serial) : NULL;
 
     if (resource && !data)
         *status = SF_ERROR_INTERNAL;
     return data;
+}
+
+/* The inspected image as floats, once a ticket. */
+static enum sf_status convert_inspected(struct sf_renderer *renderer, const struct queued *queued,
+                                        struct sf_frame *frame)
+{
+    const struct sf_inspected *inspected = &renderer->assembly->inspected;
+    uint32_t slot = (uint32_t)(queued->ticket % renderer->options.frames_kept);
+    enum sf_status status = SF_OK;
+    const void *data = read_back(renderer, inspected->readback, queued->serial, &status);
+
+    if (!data)
+        return status;
+    if (!renderer->inspected[slot])
+        renderer->inspected[slot] = malloc(sf_inspect_values(inspected) * sizeof(float));
+    if (!renderer->inspected[slot])
+        return SF_ERROR_MEMORY;
+    if (renderer->inspected_ticket[slot] != queued->ticket)
+        sf_inspect_convert(inspected, data, renderer->inspected[slot]);
+    renderer->inspected_ticket[slot] = queued->ticket;
+    frame->inspected = renderer->inspected[slot];
+    frame->inspected_width = inspected->width;
+    frame->inspected_height = inspected->height;
+    frame->inspected_channels = inspected->channels;
+    return SF_OK;
 }
 
 enum sf_status sf_renderer_wait(struct sf_renderer *renderer, uint64_t ticket, struct sf_frame *frame)
@@ -309,13 +350,16 @@ enum sf_status sf_renderer_wait(struct sf_renderer *renderer, uint64_t ticket, s
         frame->live = counts->live;
         frame->dropped = counts->dropped;
     }
+    if (!status)
+        status = convert_inspected(renderer, queued, frame);
     if (status)
-        return sf_fail(renderer->log, status, "frame %u: its results are gone", queued->number);
+        return sf_fail(renderer->log, status, "frame %u: %s", queued->number,
+                       status == SF_ERROR_MEMORY ? "out of memory" : "its results are gone");
     return SF_OK;
 }
 
-static enum sf_status add_timings(struct sf_renderer *renderer, struct sf_player *player, const struct sf_plan *plan, uint64_t serial,
-                                  uint32_t *count)
+static enum sf_status add_timings(struct sf_renderer *renderer, struct sf_player *player, const struct sf_plan *plan,
+                                  uint64_t serial, uint32_t *count)
 {
     const struct sf_pass_time *times;
     uint32_t passes;
@@ -330,7 +374,8 @@ static enum sf_status add_timings(struct sf_renderer *renderer, struct sf_player
     return status;
 }
 
-enum sf_status sf_renderer_timings(struct sf_renderer *renderer, uint64_t ticket, const struct sf_pass_timing **timings, uint32_t *count)
+enum sf_status sf_renderer_timings(struct sf_renderer *renderer, uint64_t ticket, const struct sf_pass_timing **timings,
+                                   uint32_t *count)
 {
     const struct queued *queued = find(renderer, ticket);
     enum sf_status status = SF_OK;

@@ -6,14 +6,17 @@
 _Static_assert(SF_FRAME_LIGHTS == SF_LIGHTS_MAX, "shared limits");
 _Static_assert(SF_FRAME_OBJECTS == SF_OBJECTS_MAX, "shared limits");
 _Static_assert((int)SF_DEPTH_FAR == (int)SF_NO_DEPTH, "shared limits");
-_Static_assert((int)SF_LIGHT_KIND_POINT == (int)SF_LIGHT_POINT && (int)SF_LIGHT_KIND_SPOT == (int)SF_LIGHT_SPOT, "kinds");
-_Static_assert((int)SF_OBJECT_KIND_PLANE == (int)SF_OBJECT_PLANE && (int)SF_OBJECT_KIND_MESH == (int)SF_OBJECT_MESH, "kinds");
+_Static_assert((int)SF_LIGHT_KIND_POINT == (int)SF_LIGHT_POINT && (int)SF_LIGHT_KIND_SPOT == (int)SF_LIGHT_SPOT,
+               "kinds");
+_Static_assert((int)SF_OBJECT_KIND_PLANE == (int)SF_OBJECT_PLANE && (int)SF_OBJECT_KIND_MESH == (int)SF_OBJECT_MESH,
+               "kinds");
 _Static_assert((int)SF_OBJECT_KIND_BOX == (int)SF_OBJECT_BOX && (int)SF_OBJECT_KIND_SPHERE == (int)SF_OBJECT_SPHERE &&
                    (int)SF_OBJECT_KIND_CYLINDER == (int)SF_OBJECT_CYLINDER,
                "kinds");
 _Static_assert(sizeof(struct sf_gpu_object) == 112, "std140");
 _Static_assert(sizeof(struct sf_gpu_light) == 128, "std140");
-_Static_assert(sizeof(struct sf_gpu_frame) == 64 * 3 + 16 * (11 + 9 + SF_FRAME_RAMP + 1) + 128 * SF_FRAME_LIGHTS, "std140");
+_Static_assert(sizeof(struct sf_gpu_frame) == 64 * 3 + 16 * (11 + 9 + SF_FRAME_RAMP + 1) + 128 * SF_FRAME_LIGHTS,
+               "std140");
 
 static const double PI = 3.14159265358979323846;
 
@@ -193,7 +196,9 @@ void sf_object_list_fill(const struct sf_scene *scene, struct sf_object_list *li
 
     memset(list, 0, sizeof *list);
     for (int kind = SF_OBJECT_PLANE; kind <= SF_OBJECT_MESH; kind++) {
-        uint32_t *counter = kind == SF_OBJECT_PLANE ? &list->planes : kind == SF_OBJECT_MESH ? &list->meshes : &list->solids;
+        uint32_t *counter = kind == SF_OBJECT_PLANE  ? &list->planes
+                            : kind == SF_OBJECT_MESH ? &list->meshes
+                                                     : &list->solids;
         for (uint32_t i = 0; i < scene->object_count; i++) {
             if (scene->objects[i].kind == kind) {
                 list->from[count++] = i;

@@ -42,6 +42,14 @@ done
 expect 0 "" capture "$still" -s 1x1 -o one.exr
 expect 0 "" capture "$still" -s 333x1 -o thin.exr --frames 3
 
+# An image of the graph in place of the picture.
+mkdir look
+expect 0 "" capture "$scene" $small -o look/####.exr -o look/####.png --frames 3-5 --inspect camera.raw --validate
+only look 6
+expect 2 "did you mean 'camera.raw'" capture "$scene" $small -o look/none.png --inspect camera.rau
+expect 2 "light.map" capture "$scene" $small -o look/none.png --inspect nothing
+only look 6
+
 # Limits of the device.
 limit=$(sed -n 's/.*"max_image_side": *\([0-9]*\).*/\1/p' devices.json | head -n 1)
 if [ "$limit" -lt 32768 ]; then

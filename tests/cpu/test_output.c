@@ -9,6 +9,7 @@
 #include "output/exr_compress.h"
 #include "output/half.h"
 #include "output/image.h"
+#include "output/tone.h"
 #include "sfumato/sfumato.h"
 
 static struct caught caught;
@@ -446,13 +447,63 @@ static void test_frame(void **state)
     assert_caught(&caught, "'dwab' is not available");
 }
 
+/* The inspected image: channels as they are in EXR; in PNG each over its own range. */
+static void test_inspected(void **state)
+{
+    const float far = SF_NO_DEPTH, none = nanf("");
+    const float two[] = {1, -8, 3, -4, none, -6, 2, -4, far, 5, 1.5f, -4};
+    const float grey[] = {1, 10, 100, none};
+    struct sf_exr_options options = {.compression = "zip", .half = true};
+    struct sf_frame frame = {.inspected = two, .inspected_width = 3, .inspected_height = 2, .inspected_channels = 2};
+    struct sf_exr exr;
+    struct sf_image image;
+
+    (void)state;
+    assert_int_equal(sf_frame_write_inspected_exr(&frame, "i.exr", &options, &log_caught), SF_OK);
+    assert_int_equal(sf_exr_read("i.exr", NULL, 0, &exr, &log_caught), SF_OK);
+    assert_int_equal(exr.plane_count, 2);
+    assert_int_equal(exr.width, 3);
+    assert_int_equal(exr.planes[0].stored, SF_EXR_FLOAT);
+    assert_true(sf_exr_pixels(&exr, "R")[4] == far);
+    assert_true(isnan(sf_exr_pixels(&exr, "R")[2]));
+    assert_true(sf_exr_pixels(&exr, "G")[1] == -4);
+    sf_exr_finish(&exr);
+
+    /* Red 1..3; green by size, 4..8; nothing where red is none or far. */
+    assert_int_equal(sf_frame_write_inspected_png(&frame, "i.png", &log_caught), SF_OK);
+    assert_int_equal(sf_image_read("i.png", &image, &log_caught), SF_OK);
+    const float red[] = {0, 1, 0, 0.5f, 0, 0.25f}, green[] = {1, 0, 0, 0, 0, 0};
+    for (int i = 0; i < 6; i++) {
+        assert_true(fabs(sf_srgb_encode(image.pixels[4 * i]) - red[i]) < 0.003);
+        assert_true(fabs(sf_srgb_encode(image.pixels[4 * i + 1]) - green[i]) < 0.003);
+        assert_true(image.pixels[4 * i + 2] == 0);
+    }
+    sf_image_finish(&image);
+
+    /* One channel is grey; a wide range goes by logarithms. */
+    frame = (struct sf_frame){.inspected = grey, .inspected_width = 4, .inspected_height = 1, .inspected_channels = 1};
+    assert_int_equal(sf_frame_write_inspected_png(&frame, "i.png", &log_caught), SF_OK);
+    assert_int_equal(sf_image_read("i.png", &image, &log_caught), SF_OK);
+    for (int c = 0; c < 3; c++) {
+        assert_true(image.pixels[c] == 0 && image.pixels[8 + c] == 1 && image.pixels[12 + c] == 0);
+        assert_true(fabs(sf_srgb_encode(image.pixels[4 + c]) - 0.5) < 0.003);
+    }
+    sf_image_finish(&image);
+
+    frame.inspected = NULL;
+    assert_int_equal(sf_frame_write_inspected_png(&frame, "n.png", &log_caught), SF_ERROR_USAGE);
+    assert_caught(&caught, "n.png");
+    assert_int_equal(sf_frame_write_inspected_exr(&frame, "n.exr", &options, &log_caught), SF_ERROR_USAGE);
+    assert_caught(&caught, "n.exr");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_half),           cmocka_unit_test(test_half_rows), cmocka_unit_test(test_round_trip),
         cmocka_unit_test(test_incompressible), cmocka_unit_test(test_runs),      cmocka_unit_test(test_clamp),
         cmocka_unit_test(test_attributes),     cmocka_unit_test(test_wanted),    cmocka_unit_test(test_refused),
-        cmocka_unit_test(test_frame),
+        cmocka_unit_test(test_frame),          cmocka_unit_test(test_inspected),
     };
 
     return cmocka_run_group_tests(tests, scratch_enter, scratch_leave);

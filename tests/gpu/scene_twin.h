@@ -232,7 +232,7 @@ static inline void twin_albedo(const struct sf_scene *scene, uint32_t width, uin
                                const struct twin_hit *hit, double albedo[3])
 {
     const struct sf_object *object = &scene->objects[hit->object];
-    double eye[3], way[3], x[3], at[2], reach[2] = {0};
+    double eye[3], way[3], x[3], at[2] = {0}, reach[2] = {0};
 
     for (int i = 0; i < 3; i++)
         albedo[i] = object->albedo[i];

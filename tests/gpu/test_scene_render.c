@@ -402,7 +402,7 @@ static void test_smoke_shadow(void **state)
         snprintf(json, sizeof json,
                  "{\"method\":\"thick\",\"thick\":{\"resolution\":\"full\",\"detail\":0,\"light_blur\":0,\"light_"
                  "size\":1024%s}," DARK "\"camera\":{\"eye\":[2.2,1.8,1.8],\"target\":[2.1,0,0.2],\"fov\":50},"
-                                        "\"lights\":[%s],\"objects\":[{\"type\":\"plane\"}],"
+                 "\"lights\":[%s],\"objects\":[{\"type\":\"plane\"}],"
                  "\"emitters\":[{\"type\":\"list\",\"still\":true,\"particles\":[{\"centre\":[0,2,0],\"radius\":0.8,"
                  "\"extinction\":1.5}]}]}",
                  cases[i].thick, cases[i].light);

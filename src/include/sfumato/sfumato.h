@@ -5,11 +5,19 @@
  * aborts. Unless said otherwise a device and all that was made with it belong to one thread at a time. Strings given
  * back as `char **` are malloc'ed and the caller's.
  *
- *     struct sf_device *device = NULL; struct sf_scene *scene = NULL; struct sf_renderer *renderer = NULL; uint64_t
- * ticket; sf_device_create(&(struct sf_device_options){0}, &log, &device); sf_scene_load("scenes/plume.json", NULL, 0,
- * &log, &scene); sf_renderer_create(device, scene, &(struct sf_renderer_options){.width = 800, .height = 800}, &log,
- * &renderer); sf_renderer_render(renderer, 48, &ticket); struct sf_frame frame; sf_renderer_wait(renderer, ticket,
- * &frame);   // frame.color: half RGBA
+ *     struct sf_device *device = NULL;
+ *     struct sf_scene *scene = NULL;
+ *     struct sf_renderer *renderer = NULL;
+ *     struct sf_frame frame;
+ *     uint64_t ticket;
+ *     sf_device_create(&(struct sf_device_options){0}, &log, &device);
+ *     sf_scene_load("scenes/plume.json", NULL, 0, &log, &scene);
+ *     sf_renderer_create(device, scene, &(struct sf_renderer_options){.width = 800, .height = 800}, &log, &renderer);
+ *     sf_renderer_render(renderer, 48, &ticket);
+ *     sf_renderer_wait(renderer, ticket, &frame); // frame.color: half RGBA
+ *     sf_renderer_destroy(&renderer);
+ *     sf_scene_destroy(&scene);
+ *     sf_device_destroy(&device);
  */
 #ifndef SFUMATO_H
 #define SFUMATO_H
@@ -88,6 +96,9 @@ struct sf_renderer_options {
     bool timing;            /* timestamps around each pass */
     uint32_t frames_kept;   /* results that may be looked at at once: 1..8; 0 means 2 */
     bool no_readback;       /* nothing comes back but times (for measuring) */
+    /* An image of the frame's graph whose contents at the frame's end come back as well, such as "camera.raw" or
+     * "light.map" (sf_graph_print names them all); NULL: none. Copied. An unknown name is SF_ERROR_USAGE. */
+    const char *inspect;
 };
 /* The scene and device must outlive it. */
 enum sf_status sf_renderer_create(struct sf_device *device, const struct sf_scene *scene,
@@ -113,6 +124,10 @@ struct sf_frame {
     const float *smoke_depths; /* [height][width][4] near, far, optical depth, transmittance; NULL unless asked for */
     uint32_t live;             /* particles */
     uint32_t dropped;          /* births refused by the capacity so far */
+    /* [inspected_height][inspected_width][inspected_channels]: the image that the options name, as it is at the frame's
+     * end, converted to float; NaN where no pass wrote. Array layers stand below each other. NULL unless asked for. */
+    const float *inspected;
+    uint32_t inspected_width, inspected_height, inspected_channels; /* 1, 2 or 4 channels */
     float world_to_camera[16], world_to_clip[16]; /* row-major; camera: right-handed, -z forward, Vulkan clip space */
 };
 #define SF_NO_DEPTH 1.0e6f
@@ -170,6 +185,15 @@ enum sf_status sf_frame_write_exr(const struct sf_frame *frame, const char *path
 /* 8-bit sRGB; `tone`: "linear", "reinhard", "aces", "neutral"; exposure in stops. Any thread. */
 enum sf_status sf_frame_write_png(const struct sf_frame *frame, const char *path, const char *tone, float exposure,
                                   const struct sf_log *log);
+
+/* The inspected image alone. EXR: channels R, G, B, A, as many as it has, as floats. PNG: R, G and B, each mapped for
+ * itself from its least to its greatest value (those below SF_NO_DEPTH in size) to 0..255 without gamma; by logarithms
+ * where all are positive and the greatest is over 16 times the least; values all below 0 (far depths stored as their
+ * negatives) by their size. One channel is grey, two are red and green. Pixels whose first channel holds no value are
+ * black. SF_ERROR_USAGE when the frame holds no inspected image. Any thread. */
+enum sf_status sf_frame_write_inspected_exr(const struct sf_frame *frame, const char *path,
+                                            const struct sf_exr_options *options, const struct sf_log *log);
+enum sf_status sf_frame_write_inspected_png(const struct sf_frame *frame, const char *path, const struct sf_log *log);
 
 /* A frame list such as "1-100x2,150": malloc'ed, in order, without repeats. SF_ERROR_USAGE says where it goes wrong. */
 enum sf_status sf_frames_parse(const char *text, const struct sf_log *log, uint32_t **frames, size_t *count);
