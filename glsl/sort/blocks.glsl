@@ -3,7 +3,7 @@
 // Theory. On llvmpipe a subgroup is a vector of 8 lanes and a workgroup runs on one core. Four things decide the speed there:
 // - Lines of memory that two cores write in turn. Passes over the whole list scatter every core's pairs among the other's; a block of its own keeps
 //   each core to its own lines through all digits, and one merge (merge.comp) of the blocks costs less than the traffic did.
-// - barrier() makes the shader a coroutine whose every variable lives in memory (five times slower here). A block is therefore the work of
+// - barrier() makes the shader a coroutine whose every variable lives in memory (half as fast here). A block is therefore the work of
 //   one subgroup, which needs subgroupBarrier() only. Nothing is assumed of the subgroup's size, nor that workgroups run at the same time.
 // - Access to buffers and to shared memory costs a branch and a bounds check a lane; a private array with a computed index does not. So each lane
 //   counts the digits of its own slice of the block in private counters, which then become the places of its pairs.
