@@ -118,8 +118,9 @@ struct sf_pass_time {
 };
 /* When on, each pass of the player is surrounded by timestamps. Costs some microseconds a pass. */
 void sf_player_set_timing(struct sf_player *player, bool on);
-/* After sf_frame_wait: times of the passes of the last play of the player in that frame, in plan order; a pass begins
- * where the one before ended, so that all add up. Kept as long as readbacks are. SF_ERROR_USAGE when not timed. Any
+/* After sf_frame_wait: times of the player's passes in that frame, in plan order; a pass begins where the one before
+ * ended, so that all add up. Where it played several times, a pass begins as in the first play and lasts as long as in
+ * all together (up to 64). Kept as long as readbacks are. SF_ERROR_USAGE when not timed. Any
  * thread. */
 enum sf_status sf_player_times(struct sf_player *player, uint64_t serial, const struct sf_pass_time **times,
                                uint32_t *count);

@@ -385,13 +385,13 @@ static void record_transfer(struct sf_player *player, VkCommandBuffer commands, 
         gpu->vk.vkCmdCopyBufferToImage(commands, source->buffer, target->image, target_layout, 1, &buffer_image);
 }
 
-static void record(struct sf_player *player, VkCommandBuffer commands, struct sf_timer *timer)
+static void record(struct sf_player *player, VkCommandBuffer commands, struct sf_timer *timer, uint64_t serial)
 {
     struct sf_gpu *gpu = player->gpu;
     uint32_t barriers = 0;
 
     if (timer)
-        sf_timer_start(gpu, commands, timer);
+        sf_timer_start(gpu, commands, timer, serial);
     for (uint32_t i = 0; i < player->step_count; i++) {
         const struct sf_step *step = &player->steps[i];
         VkDebugUtilsLabelEXT label = {.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT, .pLabelName = step->plan->name};
@@ -456,13 +456,11 @@ enum sf_status sf_player_play(struct sf_player *player)
     if (serial != player->slice_serial)
         player->slice = (player->slice + 1) % player->depth;
     player->slice_serial = serial;
-    if (player->timing && player->timers) {
+    if (player->timing && player->timers)
         timer = &player->timers[player->slice];
-        timer->serial = serial;
-    }
     resolve_all(player, player->slice);
     write_descriptors(player);
-    record(player, frame->commands, timer);
+    record(player, frame->commands, timer, serial);
     finish_play(player, serial);
     player->record_ns = sf_clock_ns() - start;
     return SF_OK;
