@@ -94,7 +94,8 @@ static const struct sf_param shadow_rows[] = {
     {ROW_FLOAT("softness", struct sf_shadow_settings, softness, 1.5, 0, 16, "px", "sigma of the shadow map's blur"),
      .rebuild = SF_REBUILD_GRAPH},
     {ROW_FLOAT("exponent", struct sf_shadow_settings, exponent, 40, 1, 80, "",
-               "of the exponential shadow map: larger is sharper, and leaks less light")},
+               "of the exponential shadow map: larger is sharper, and leaks less light"),
+     .rebuild = SF_REBUILD_GRAPH},
 };
 static const struct sf_param_group shadow_group =
     GROUP("shadow", struct sf_shadow_settings, shadow_rows, "Shadows of the scene's objects.");
