@@ -21,6 +21,7 @@ struct sf_method_frame {
     sf_resource shadow_map; /* exponential shadow maps of the lights, one cell a light */
     /* Set by `light`: what the scene's shading reads for the smoke's shadow on it. 0: none. */
     sf_resource smoke_map;   /* RGBA32F, cells side by side, one a light: R near, G far, B coverage, A optical depth */
+    bool smoke_shadows;      /* the scene is to be shadowed by what smoke_map holds */
     sf_resource smoke_views; /* storage: struct sf_gpu_light_view[light_count] */
     /* Set by `view` when asked for: planes at the frame's size; 0 when the method has none. */
     bool want_aovs;

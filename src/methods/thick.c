@@ -186,6 +186,7 @@ enum sf_status sf_thick_light(struct sf_method_frame *frame, void *state, const 
                                    .indirect = thick->args,
                                    .indirect_offset = SF_THICK_DRAW_LIGHT_OFFSET,
                                    .raster = {.blend = {SF_BLEND_MIN_ADD}, .triangle_strip = true}});
+    frame->smoke_shadows = frame->scene->thick.ground_shadow;
     const sf_resource images[] = {raw, half_way, frame->smoke_map};
     static const char *const names[] = {"thick.light_blur_x", "thick.light_blur_y"};
     add_blur(frame, thick, names, images, false, &thick->light_blur, blur_radius(frame->scene->thick.light_blur));

@@ -104,7 +104,7 @@ static void find_constants(struct parts *parts)
                      : sf_scene_shows_picture(scene)           ? 2
                      : environment->kind == SF_ENVIRONMENT_SKY ? 0
                                                                : 1;
-    bool dims = assembly->method.smoke_map && (scene->method != SF_METHOD_THICK || scene->thick.ground_shadow);
+    bool dims = assembly->method.smoke_map && assembly->method.smoke_shadows;
     uint32_t level = !environment->pixels; /* sky and colour are the same all around */
     const uint32_t constants[] = {assembly->list.planes, scene->light_count, kinds, sf_shadow_mask(&assembly->shadow),
                                   dims ? casts : 0,      checkered,          shown, level};

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <string.h>
+#include "sim/obstacle.h"
 
 _Static_assert(SF_FRAME_LIGHTS == SF_LIGHTS_MAX, "shared limits");
 _Static_assert(SF_FRAME_OBJECTS == SF_OBJECTS_MAX, "shared limits");
@@ -208,63 +209,11 @@ void sf_object_list_fill(const struct sf_scene *scene, struct sf_object_list *li
     }
 }
 
-/* The rows of the object's axes, in the world: R = Rz Ry Rx, so row i of the inverse is column i of R. */
-static void object_axes(const struct sf_object *from, double axes[3][3])
-{
-    double cx = cos(radians(from->rotation[0])), sx = sin(radians(from->rotation[0]));
-    double cy = cos(radians(from->rotation[1])), sy = sin(radians(from->rotation[1]));
-    double cz = cos(radians(from->rotation[2])), sz = sin(radians(from->rotation[2]));
-    const double columns[3][3] = {{cz * cy, sz * cy, -sy},
-                                  {cz * sy * sx - sz * cx, sz * sy * sx + cz * cx, cy * sx},
-                                  {cz * sy * cx + sz * sx, sz * sy * cx - cz * sx, cy * cx}};
-
-    memcpy(axes, columns, sizeof columns);
-}
-
-/* A plane's y is its normal; x and z are the checker's axes (docs/scene.md), the world's own for a level plane. */
-static void plane_axes(const struct sf_object *from, double axes[3][3])
-{
-    for (int i = 0; i < 3; i++)
-        axes[1][i] = from->normal[i];
-    normalize(axes[1]);
-    const double along[3] = {fabs(axes[1][2]) > 0.9 ? 1 : 0, 0, fabs(axes[1][2]) > 0.9 ? 0 : 1};
-    cross(axes[1], along, axes[0]);
-    normalize(axes[0]);
-    cross(axes[0], axes[1], axes[2]);
-}
-
 void sf_object_fill(const struct sf_object *from, struct sf_gpu_object *object)
 {
-    double axes[3][3], position[3] = {from->position[0], from->position[1], from->position[2]};
-    float *rows[3] = {object->row0, object->row1, object->row2};
-
-    memset(object, 0, sizeof *object);
-    if (from->kind == SF_OBJECT_PLANE)
-        plane_axes(from, axes);
-    else
-        object_axes(from, axes);
-    for (int i = 0; i < 3; i++)
-        set4(rows[i], axes[i][0], axes[i][1], axes[i][2], -dot(axes[i], position));
-    switch (from->kind) {
-    case SF_OBJECT_BOX:
-        set4(object->shape, from->size[0] / 2.0, from->size[1] / 2.0, from->size[2] / 2.0, 0);
-        break;
-    case SF_OBJECT_SPHERE:
-        set4(object->shape, from->radius, from->radius, from->radius, 0);
-        break;
-    case SF_OBJECT_CYLINDER:
-        set4(object->shape, from->radius, from->height / 2.0, from->radius, 0);
-        break;
-    case SF_OBJECT_MESH:
-        set4(object->shape, from->scale, from->scale, from->scale, 0);
-        break;
-    default:
-        break;
-    }
-    object->shape[3] = (float)from->kind;
+    sf_obstacle_fill(from, object);
     set_rgb(object->albedo, from->albedo, 1);
     object->albedo[3] = from->kind == SF_OBJECT_PLANE ? from->checker : 0;
     set_rgb(object->albedo2, from->albedo2, 1);
-    object->albedo2[3] = from->collide && from->kind != SF_OBJECT_MESH ? 1.0f : 0.0f;
-    set4(object->bounce, from->restitution, from->friction, 0, 0);
+    object->albedo2[3] = sf_obstacle_collides(from) ? 1.0f : 0.0f;
 }

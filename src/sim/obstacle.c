@@ -23,22 +23,30 @@ static void solid_axes(const float rotation[3], double axes[3][3])
     memcpy(axes, columns, sizeof columns);
 }
 
-static void plane_axes(const float normal[3], double axes[3][3])
+static void cross(const double a[3], const double b[3], double out[3])
 {
-    double length = sqrt((double)normal[0] * normal[0] + (double)normal[1] * normal[1] + (double)normal[2] * normal[2]);
-    double across, side[3] = {0};
+    for (int i = 0; i < 3; i++)
+        out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+}
+
+static void normalize(double v[3])
+{
+    double length = sqrt(dot(v, v));
 
     for (int i = 0; i < 3; i++)
-        axes[1][i] = normal[i] / length;
-    side[fabs(axes[1][0]) < 0.9 ? 0 : 1] = 1;
-    across = dot(side, axes[1]);
+        v[i] /= length;
+}
+
+/* A plane's y is its normal; x and z are the checker's axes (docs/scene.md), the world's own for a level plane. */
+static void plane_axes(const float normal[3], double axes[3][3])
+{
     for (int i = 0; i < 3; i++)
-        side[i] -= across * axes[1][i];
-    length = sqrt(dot(side, side));
-    for (int i = 0; i < 3; i++)
-        axes[0][i] = side[i] / length;
-    for (int i = 0; i < 3; i++)
-        axes[2][i] = axes[0][(i + 1) % 3] * axes[1][(i + 2) % 3] - axes[0][(i + 2) % 3] * axes[1][(i + 1) % 3];
+        axes[1][i] = normal[i];
+    normalize(axes[1]);
+    const double along[3] = {fabs(axes[1][2]) > 0.9 ? 1 : 0, 0, fabs(axes[1][2]) > 0.9 ? 0 : 1};
+    cross(axes[1], along, axes[0]);
+    normalize(axes[0]);
+    cross(axes[0], axes[1], axes[2]);
 }
 
 bool sf_obstacle_collides(const struct sf_object *object)
@@ -65,6 +73,7 @@ void sf_obstacle_fill(const struct sf_object *from, struct sf_gpu_object *to)
     for (int i = 0; i < 3; i++)
         to->shape[i] = from->kind == SF_OBJECT_BOX     ? 0.5f * from->size[i]
                        : from->kind == SF_OBJECT_PLANE ? 0
+                       : from->kind == SF_OBJECT_MESH  ? from->scale
                                                        : from->radius;
     if (from->kind == SF_OBJECT_CYLINDER)
         to->shape[1] = 0.5f * from->height;
