@@ -70,8 +70,10 @@ float smoke_share(uint i, vec3 q, vec4 window)
         return 1.0;
     vec3 at = light_map_of(light_kind(i) != SF_LIGHT_KIND_DIRECTIONAL, q, window);
     vec2 inner = clamp(at.xy, 0.0, 0.9999);
-    vec2 texel = vec2(inner.x + float(i), inner.y) * vec2(1.0 / float(LIGHTS), 1.0) * vec2(textureSize(smoke_map, 0));
-    float through = exp(-light_map_depth(texelFetch(smoke_map, ivec2(texel), 0), at.z));
+    // Filtered: the edge of a shadow on a surface shows each texel. The blur has spread the depths beyond where A has died away, so that
+    // the filter mixes no emptiness in.
+    vec4 texel = textureLod(smoke_map, vec2(inner.x + float(i), inner.y) * vec2(1.0 / float(LIGHTS), 1.0), 0.0);
+    float through = exp(-light_map_depth(texel, at.z));
     return inner == at.xy ? through : 1.0;
 }
 

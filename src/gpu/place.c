@@ -86,7 +86,7 @@ static const char *image_misfit(const struct sf_player *player, sf_resource numb
             if (use->resource != number)
                 continue;
             blended = blended || (use->access == SF_ACCESS_COLOR && raster->blend[use->binding] != SF_BLEND_NONE);
-            filtered = filtered || (use->access == SF_ACCESS_SAMPLED && use->sampler != SF_SAMPLER_NEAREST);
+            filtered = filtered || (use->access == SF_ACCESS_SAMPLED && use->sampler == SF_SAMPLER_LINEAR_REPEAT);
         }
     }
     return sf_vk_image_misfit(player->gpu, resource->format, sf_vk_image_usage(resource->usage), blended, filtered);

@@ -99,6 +99,15 @@ static void collect_attachments(const struct sf_player *player, struct sf_step *
         key->raster.blend[i] = SF_BLEND_NONE; /* so that equal pipelines have equal keys */
 }
 
+/* Some devices do not filter 32-bit floats: what is asked to be smooth there is looked up nearest. */
+static enum sf_sampler sampler_of(const struct sf_player *player, const struct sf_use *use)
+{
+    VkFormatFeatureFlags has = player->gpu->formats[player->plan->resources[use->resource - 1].format];
+    bool filters = has & VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT;
+
+    return use->sampler == SF_SAMPLER_LINEAR && !filters ? SF_SAMPLER_NEAREST : use->sampler;
+}
+
 /* Bindings in ascending order, so that equal pipelines have equal keys. */
 static void collect_bindings(const struct sf_player *player, const struct sf_plan_pass *pass,
                              struct sf_pipeline_key *key)
@@ -113,7 +122,7 @@ static void collect_bindings(const struct sf_player *player, const struct sf_pla
             key->bindings[at] = key->bindings[at - 1];
         key->bindings[at].binding = use->binding;
         key->bindings[at].type = descriptor_type(use->access, player->plan->resources[use->resource - 1].image);
-        key->bindings[at].sampler = use->access == SF_ACCESS_SAMPLED ? use->sampler : SF_SAMPLER_NEAREST;
+        key->bindings[at].sampler = use->access == SF_ACCESS_SAMPLED ? sampler_of(player, use) : SF_SAMPLER_NEAREST;
         key->binding_count++;
     }
 }

@@ -93,7 +93,7 @@ enum sf_load {
     SF_LOAD_DISCARD, /* anything: the pass writes every pixel that is read later */
 };
 
-/* The first two clamp to the edge. */
+/* The first two clamp to the edge. LINEAR falls back to nearest where the device cannot filter the format. */
 enum sf_sampler { SF_SAMPLER_NEAREST, SF_SAMPLER_LINEAR, SF_SAMPLER_LINEAR_REPEAT, SF_SAMPLER_COUNT };
 
 /* A size: absolute, or that of another image, declared before, times num/den, rounded up, at least 1. */

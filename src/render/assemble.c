@@ -124,7 +124,10 @@ static uint32_t shade_uses(struct parts *parts, struct sf_use uses[SHADE_USES])
         {.resource = method->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
         {.resource = assembly->objects_upload, .access = SF_ACCESS_UNIFORM, .binding = 1},
         {.resource = method->shadow_map, .access = SF_ACCESS_SAMPLED, .binding = 2},
-        {.resource = smoke ? method->smoke_map : blank(assembly), .access = SF_ACCESS_SAMPLED, .binding = 3},
+        {.resource = smoke ? method->smoke_map : blank(assembly),
+         .access = SF_ACCESS_SAMPLED,
+         .binding = 3,
+         .sampler = SF_SAMPLER_LINEAR},
         {.resource = smoke ? method->smoke_views : assembly->objects_upload, .access = SF_ACCESS_UNIFORM, .binding = 4},
     };
 

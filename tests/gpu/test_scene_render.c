@@ -398,7 +398,7 @@ static void test_smoke_shadow(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         char json[2048];
         uint32_t shadowed = 0;
-        double worst = 0;
+        double worst = 0, sum = 0;
         snprintf(json, sizeof json,
                  "{\"method\":\"thick\",\"thick\":{\"resolution\":\"full\",\"detail\":0,\"light_blur\":0,\"light_"
                  "size\":1024%s}," DARK "\"camera\":{\"eye\":[2.2,1.8,1.8],\"target\":[2.1,0,0.2],\"fov\":50},"
@@ -419,13 +419,17 @@ static void test_smoke_shadow(void **state)
                 double depth = smoke_depth(&picture.scene->lights[0], at);
                 double share = picture.frame.color_float[4 * (y * SIDE + x)] / open[0];
                 shadowed += depth > 0.5;
-                worst = fmax(worst, fabs(share - (cases[i].shadow ? exp(-depth) : 1)));
+                double error = fabs(share - (cases[i].shadow ? exp(-depth) : 1));
+                worst = fmax(worst, error);
+                sum += error;
             }
         }
         drop(&picture);
-        /* One texel at the rim of the sphere, where its depth is steepest, is sqrt(2 r texel) of chord. */
-        if (shadowed < 500 || worst > (cases[i].shadow ? 0.12 : 1e-3))
-            fail_msg("%s%s: %u pixels in shadow, off by up to %g", cases[i].light, cases[i].thick, shadowed, worst);
+        /* At the rim of the sphere, where its depth is steepest, a texel is sqrt(2 r texel) of chord, times 2 and the extinction:
+         * 0.2 off at most. The mean is next to nothing. */
+        if (shadowed < 500 || worst > (cases[i].shadow ? 0.2 : 1e-3) || sum > 5e-4 * shadowed)
+            fail_msg("%s%s: %u pixels in shadow, off by up to %g, %g in the mean", cases[i].light, cases[i].thick,
+                     shadowed, worst, sum / shadowed);
     }
 }
 
