@@ -4,8 +4,6 @@
 #include "shared/frame.h"
 #include "shared/thick.h"
 
-layout(constant_id = 0) const uint MARGIN = 0u; // as in tile.vert
-layout(constant_id = 1) const uint TO_FRAME = 1u;
 layout(constant_id = 2) const uint SCALE = 1u;
 layout(constant_id = 3) const uint CHOICE = 0u; // as in tile.vert
 layout(set = 0, binding = 2) uniform sampler2D smoke;

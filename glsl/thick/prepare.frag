@@ -6,8 +6,6 @@
 #include "shared/frame.h"
 #include "shared/thick.h"
 
-layout(constant_id = 0) const uint MARGIN = 0u; // as in tile.vert: both stages share their constants
-layout(constant_id = 1) const uint TO_FRAME = 0u;
 layout(set = 0, binding = 2) uniform sampler2D scene_depth;
 layout(set = 0, binding = 8, std430) writeonly buffer Mask { uint mask[]; };
 layout(push_constant) uniform Push { sf_thick_push push; };

@@ -342,3 +342,18 @@ char *sf_path_beside(const char *from, const char *name)
     memcpy(path + folder, name, length + 1);
     return path;
 }
+
+bool sf_path_ends(const char *path, const char *ending)
+{
+    size_t length = strlen(path), tail = strlen(ending);
+
+    if (length < tail)
+        return false;
+    for (size_t i = 0; i < tail; i++) {
+        char c = path[length - tail + i];
+
+        if ((c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c) != ending[i])
+            return false;
+    }
+    return true;
+}

@@ -36,4 +36,7 @@ char *sf_cache_path(const char *name);
 /* `name` seen from the folder of `from` (absolute names pass through); malloc'ed, NULL when memory is out. */
 char *sf_path_beside(const char *from, const char *name);
 
+/* Whether the name ends so; `ending` in lower case, the name in either: ".csv". */
+bool sf_path_ends(const char *path, const char *ending);
+
 #endif

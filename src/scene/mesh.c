@@ -10,6 +10,7 @@
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+#include "base/file.h"
 #include "base/hash.h"
 #include "params/json.h"
 #include "scene/vector.h"
@@ -56,21 +57,6 @@ static void file_flush(struct aiFile *file)
     (void)file;
 }
 
-static bool has_ending(const char *path, const char *ending)
-{
-    size_t length = strlen(path), tail = strlen(ending);
-
-    if (length < tail)
-        return false;
-    for (size_t i = 0; i < tail; i++) {
-        char c = path[length - tail + i];
-
-        if ((c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c) != ending[i])
-            return false;
-    }
-    return true;
-}
-
 static struct aiFile *file_open(struct aiFileIO *io, const char *path, const char *mode)
 {
     struct aiFile *file;
@@ -78,7 +64,7 @@ static struct aiFile *file_open(struct aiFileIO *io, const char *path, const cha
     FILE *stream;
 
     (void)io;
-    if (mode[0] != 'r' || has_ending(path, ".mtl") || stat(path, &info) != 0 || !S_ISREG(info.st_mode) ||
+    if (mode[0] != 'r' || sf_path_ends(path, ".mtl") || stat(path, &info) != 0 || !S_ISREG(info.st_mode) ||
         info.st_size > FILE_BYTES_MAX)
         return NULL;
     file = calloc(1, sizeof *file);
@@ -289,7 +275,7 @@ enum sf_status sf_mesh_read(const char *path, struct sf_arena *arena, const stru
     struct stat info;
     char reason[160];
 
-    if (!has_ending(path, ".obj") && !has_ending(path, ".gltf") && !has_ending(path, ".glb"))
+    if (!sf_path_ends(path, ".obj") && !sf_path_ends(path, ".gltf") && !sf_path_ends(path, ".glb"))
         return sf_fail(log, SF_ERROR_SCENE, "%s: unsupported kind of file; meshes come from .obj, .gltf or .glb", path);
     if (stat(path, &info) != 0 || !S_ISREG(info.st_mode))
         return sf_fail(log, SF_ERROR_SCENE, "%s: no such file", path);

@@ -104,30 +104,15 @@ enum sf_status sf_particle_not_a_number(const struct sf_particle_source *source,
                    column->name, shown);
 }
 
-static bool has_ending(const char *path, const char *ending)
-{
-    size_t length = strlen(path), tail = strlen(ending);
-
-    if (length < tail)
-        return false;
-    for (size_t i = 0; i < tail; i++) {
-        char c = path[length - tail + i];
-
-        if ((c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c) != ending[i])
-            return false;
-    }
-    return true;
-}
-
 enum sf_status sf_particle_file_read(const char *path, struct sf_arena *arena, const struct sf_log *log,
                                      struct sf_listed **list, uint32_t *count, uint64_t *hash)
 {
     struct sf_particle_source source = {.path = path, .log = log, .arena = arena};
-    bool csv = has_ending(path, ".csv");
+    bool csv = sf_path_ends(path, ".csv");
     enum sf_status status;
     char *data = NULL;
 
-    if (!csv && !has_ending(path, ".ply"))
+    if (!csv && !sf_path_ends(path, ".ply"))
         return sf_fail(log, SF_ERROR_SCENE, "%s: unsupported kind of file; particles come from .csv or .ply", path);
     if ((status = sf_file_read(path, FILE_BYTES_MAX, log, &data, &source.size)) != SF_OK)
         return status;
