@@ -6,6 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include "graph/plan.h"
+#include "sfumato/sfumato.h"
 
 /* ---- devices ---- */
 
@@ -33,6 +34,7 @@ struct sf_gpu_options {
     uint64_t budget_bytes; /* device memory that may be allocated; 0: 80% of the device's heap */
     uint64_t timeout_ns;   /* the longest wait for the device; 0: 60 s */
     bool no_cache;         /* neither read nor write the pipeline cache on disk */
+    const struct sf_surface_source *surface; /* NULL: nothing will be shown; copied */
 };
 
 struct sf_gpu;
@@ -109,6 +111,42 @@ enum sf_status sf_gpu_wait_idle(struct sf_gpu *gpu);
  * there are none of that frame. Any thread. */
 const void *sf_player_readback(struct sf_player *player, sf_resource resource, uint64_t serial);
 void sf_player_set_readback_depth(struct sf_player *player, uint32_t frames); /* before the first play */
+
+/* ---- shaders at run time: as sf_device_set_shader ---- */
+enum sf_status sf_gpu_set_shader(struct sf_gpu *gpu, const char *name, const uint32_t *words, size_t bytes);
+
+/* ---- showing: images of the device's surface ---- */
+
+struct sf_swapchain;
+enum sf_present_mode {
+    SF_PRESENT_FIFO,
+    SF_PRESENT_FIFO_RELAXED,
+    SF_PRESENT_MAILBOX,
+    SF_PRESENT_IMMEDIATE,
+    SF_PRESENT_COUNT
+};
+/* "fifo"; NULL when out of range. */
+const char *sf_present_mode_name(enum sf_present_mode mode);
+/* Bit set of 1u << mode that the surface has. */
+enum sf_status sf_swapchain_modes(struct sf_gpu *gpu, uint32_t *modes);
+/* Images of about the size asked for (what the surface allows), SF_FORMAT_BGRA8_UNORM or SF_FORMAT_RGBA8_UNORM. One a
+ * device. SF_ERROR_USAGE when the device has no surface or not that mode. A surface of no size gives a swapchain
+ * without images: acquire then gives NULL and SF_OK. */
+enum sf_status sf_swapchain_create(struct sf_gpu *gpu, uint32_t width, uint32_t height, enum sf_present_mode mode,
+                                   struct sf_swapchain **swapchain);
+void sf_swapchain_destroy(struct sf_swapchain **swapchain); /* waits for idle */
+/* Images anew, of another size or mode, on a new surface when the old one was lost. */
+enum sf_status sf_swapchain_renew(struct sf_swapchain *swapchain, uint32_t width, uint32_t height,
+                                  enum sf_present_mode mode);
+void sf_swapchain_extent(const struct sf_swapchain *swapchain, uint32_t *width, uint32_t *height, uint32_t *images,
+                         enum sf_format *format);
+/* The image to draw this frame into, between sf_frame_begin and sf_frame_end: imported with outside SF_ACCESS_PRESENT,
+ * its old contents gone. sf_frame_end then submits and presents it. *image NULL with SF_OK: the swapchain no longer fits
+ * its surface (or the surface is lost, or nothing came free in 1 s): end the frame without it, renew, try again. */
+enum sf_status sf_swapchain_acquire(struct sf_swapchain *swapchain, struct sf_gpu_image **image);
+/* True when the last present said that the images no longer fit well: renew when convenient (a size that has not changed
+ * is no reason to try again: lavapipe says so for ever). */
+bool sf_swapchain_suboptimal(const struct sf_swapchain *swapchain);
 
 /* ---- timing ---- */
 

@@ -113,6 +113,7 @@ static const struct {
     [SF_FORMAT_R8_UNORM] = {"r8_unorm", 1},
     [SF_FORMAT_RGBA8_UNORM] = {"rgba8_unorm", 4},
     [SF_FORMAT_RGBA8_SRGB] = {"rgba8_srgb", 4},
+    [SF_FORMAT_BGRA8_UNORM] = {"bgra8_unorm", 4},
     [SF_FORMAT_R16F] = {"r16f", 2},
     [SF_FORMAT_RG16F] = {"rg16f", 4},
     [SF_FORMAT_RGBA16F] = {"rgba16f", 8},

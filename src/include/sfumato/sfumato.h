@@ -42,6 +42,15 @@ struct sf_device_info {
 };
 enum sf_status sf_device_list(const struct sf_log *log, struct sf_device_info **infos, uint32_t *count);
 
+/* How a host's windowing library makes Vulkan surfaces. `create` is called by sf_device_create, and again when a surface
+ * is lost: `instance` is the VkInstance, *surface becomes a VkSurfaceKHR, which the device destroys. */
+struct sf_surface_source {
+    const char *const *extensions; /* of the instance, as the windowing library needs them */
+    uint32_t extension_count;
+    enum sf_status (*create)(void *user, void *instance, uint64_t *surface);
+    void *user;
+};
+
 struct sf_device;
 struct sf_device_options {
     const char *device;    /* index, UUID or part of a name; NULL: the best one */
@@ -49,6 +58,9 @@ struct sf_device_options {
     uint64_t budget_bytes; /* device memory; 0: 80 % of the device's */
     uint64_t timeout_ns;   /* longest wait for the device; 0: 60 s */
     bool no_cache;         /* leave the pipeline cache on disk alone */
+    /* Show pictures in a window (sf_window_create): only devices that can are chosen from. NULL: no window. Copied; what
+     * it points to must outlive the device. */
+    const struct sf_surface_source *surface;
 };
 enum sf_status sf_device_create(const struct sf_device_options *options, const struct sf_log *log,
                                 struct sf_device **device);
@@ -56,6 +68,15 @@ void sf_device_destroy(struct sf_device **device);
 void sf_device_describe(const struct sf_device *device, struct sf_device_info *info);
 uint32_t sf_device_validation_messages(const struct sf_device *device);
 void sf_device_memory(const struct sf_device *device, uint64_t *used, uint64_t *budget);
+
+/* ---- shaders at run time ---- */
+
+/* The shaders of the library, "thick/march.comp" and so on, as under glsl/; NULL behind the last. */
+const char *sf_shader_name(uint32_t index);
+/* Another SPIR-V for the shader of that name (copied): every pipeline that uses it is made anew, and later ones use it.
+ * Waits for the device. When it cannot be (SF_ERROR_USAGE: no such shader, or not SPIR-V; else what the driver says),
+ * everything stays as it was. `words` NULL: the library's own again. */
+enum sf_status sf_device_set_shader(struct sf_device *device, const char *name, const uint32_t *words, size_t bytes);
 
 /* ---- scenes ---- */
 
@@ -79,8 +100,58 @@ struct sf_scene_info {
 };
 void sf_scene_describe(const struct sf_scene *scene, struct sf_scene_info *info);
 
-/* ---- the parameter table as a document: "text", "json-schema" or "markdown" ---- */
+/* Writes the scene that sf_scene_parse would make of these arguments as a file: only keys that differ from their
+ * defaults (or must be there), comments kept, names of files made to fit the new folder. Checked first; written whole or
+ * not at all. */
+enum sf_status sf_scene_save(const char *name, const char *text, size_t bytes, const char *const *sets,
+                             uint32_t set_count, const char *path, const struct sf_log *log);
+
+struct sf_camera_view {
+    float eye[3], target[3], up[3];
+    float fov;       /* deg, vertical */
+    float near_clip; /* m */
+};
+/* The scene's camera at a time in s (frame/fps). */
+void sf_scene_view(const struct sf_scene *scene, double time, struct sf_camera_view *view);
+
+/* ---- the parameter table ---- */
+
+/* As a document: "text", "json-schema" or "markdown". */
 enum sf_status sf_params_print(const char *format, const struct sf_log *log, char **text);
+
+enum sf_control_kind {
+    SF_CONTROL_BOOL,   /* 0 or 1 */
+    SF_CONTROL_INT,    /* whole number */
+    SF_CONTROL_FLOAT,  /* number */
+    SF_CONTROL_VECTOR, /* 3 numbers */
+    SF_CONTROL_COLOR,  /* 3 numbers, linear Rec. 709 */
+    SF_CONTROL_RANGE,  /* 2 numbers, lower first */
+    SF_CONTROL_CHOICE, /* index into `choices` */
+    SF_CONTROL_TEXT,   /* `text` */
+};
+/* A parameter of a scene with its value. */
+struct sf_control {
+    const char *path;   /* as sets name it: "lights.0.intensity" */
+    const char *group;  /* "lights.0"; "" outermost */
+    const char *key;    /* "intensity" */
+    const char *unit;   /* "m"; "" */
+    const char *doc;    /* one line */
+    const char *renews; /* what a change makes anew: "", "graph", "simulation" or "files" */
+    enum sf_control_kind kind;
+    uint32_t numbers;           /* in value: 1 to 3; 0 for SF_CONTROL_TEXT */
+    double value[3], usual[3];  /* usual: the default */
+    double min, max;            /* inclusive, each number */
+    bool required;              /* has no default */
+    const char *text;           /* SF_CONTROL_TEXT: may be NULL */
+    const char *const *choices; /* NULL-terminated */
+};
+/* Every parameter that a set can change (elements of lists up to 64 long included), in the table's order; one malloc'ed
+ * block with all that it points to, good while the scene lives. */
+enum sf_status sf_scene_controls(const struct sf_scene *scene, const struct sf_log *log, struct sf_control **controls,
+                                 uint32_t *count);
+/* "lights.0.intensity=3.5" for the control's value (or text), so that setting it gives the same bits. malloc'ed; NULL
+ * when memory is out. */
+char *sf_control_print(const struct sf_control *control);
 
 /* ---- rendering ---- */
 
@@ -96,15 +167,29 @@ struct sf_renderer_options {
     bool timing;            /* timestamps around each pass */
     uint32_t frames_kept;   /* results that may be looked at at once: 1..8; 0 means 2 */
     bool no_readback;       /* nothing comes back but times (for measuring) */
-    /* An image of the frame's graph whose contents at the frame's end come back as well, such as "camera.raw" or
-     * "light.map" (sf_graph_print names them all); NULL: none. Copied. An unknown name is SF_ERROR_USAGE. */
+    /* An image or buffer of the frame's graph whose contents at the frame's end come back as well, such as "camera.raw"
+     * or "light.map" (sf_graph_print names them all); NULL: none. Copied. An unknown name is SF_ERROR_USAGE. */
     const char *inspect;
+    /* The picture stays on the device for sf_window_show; color, depth and smoke do not come back, all else does. */
+    bool shown;
 };
 /* The scene and device must outlive it. */
 enum sf_status sf_renderer_create(struct sf_device *device, const struct sf_scene *scene,
                                   const struct sf_renderer_options *options, const struct sf_log *log,
                                   struct sf_renderer **renderer);
 void sf_renderer_destroy(struct sf_renderer **renderer);
+
+/* Takes `scene` in place of the one before. What differs between the two decides what is made anew, as the parameter table
+ * says ("renews"), and nothing else is: the simulation goes on unless something of it differs, when it starts again. The
+ * pictures that follow have the same bits as those of a renderer made for `scene`. When it fails, the renderer goes on
+ * with the old scene; else the old one may be destroyed. Frames that were queued can still be waited for unless the
+ * graph was made anew. */
+enum sf_status sf_renderer_set_scene(struct sf_renderer *renderer, const struct sf_scene *scene);
+/* Other options for the frames that follow; the simulation stays where it is, tickets given before are void. When it
+ * fails, everything stays as it was. */
+enum sf_status sf_renderer_set_options(struct sf_renderer *renderer, const struct sf_renderer_options *options);
+/* The eye of the frames that follow; NULL: the scene's camera. */
+void sf_renderer_set_view(struct sf_renderer *renderer, const struct sf_camera_view *view);
 
 /* Steps the simulation up to just before frame number `frame` (from the start when it lies behind): for long ways, so
  * that a host can show progress. `progress` (may be NULL) is called now and then with steps done and steps to do; false
@@ -124,10 +209,13 @@ struct sf_frame {
     const float *smoke_depths; /* [height][width][4] near, far, optical depth, transmittance; NULL unless asked for */
     uint32_t live;             /* particles */
     uint32_t dropped;          /* births refused by the capacity so far */
+    float bounds_min[3], bounds_max[3]; /* m: of the particles' spheres; min above max when there are none */
     /* [inspected_height][inspected_width][inspected_channels]: the image that the options name, as it is at the frame's
      * end, converted to float; NaN where no pass wrote. Array layers stand below each other. NULL unless asked for. */
     const float *inspected;
     uint32_t inspected_width, inspected_height, inspected_channels; /* 1, 2 or 4 channels */
+    const uint32_t *inspected_words; /* when the options name a buffer: its first 64 KiB at most; else NULL */
+    uint32_t inspected_word_count;
     float world_to_camera[16], world_to_clip[16]; /* row-major; camera: right-handed, -z forward, Vulkan clip space */
 };
 #define SF_NO_DEPTH 1.0e6f
@@ -147,9 +235,70 @@ enum sf_status sf_renderer_timings(struct sf_renderer *renderer, uint64_t ticket
 /* CPU ns that the last sf_renderer_render took to record its passes, and how many they were. */
 uint64_t sf_renderer_record_ns(const struct sf_renderer *renderer, uint32_t *passes);
 
+/* The compiled graphs of a renderer as it is now, in the formats of sf_graph_print. */
+enum sf_status sf_renderer_graph_print(const struct sf_renderer *renderer, const char *format, char **text);
 /* The frame's compiled graph as "text", "dot" or "json"; needs no device. */
 enum sf_status sf_graph_print(const struct sf_scene *scene, uint32_t width, uint32_t height, uint32_t aovs,
                               const char *format, const struct sf_log *log, char **text);
+
+/* ---- windows: pictures and a user interface on the host's surface ---- */
+
+struct sf_window;
+struct sf_window_options {
+    uint32_t width, height; /* px of the framebuffer, as the windowing library says; 0: minimised */
+    /* "fifo" (waits for the screen), "fifo_relaxed", "mailbox" (newest picture at each refresh), "immediate" (tears).
+     * NULL: "fifo". One that the surface does not have is SF_ERROR_USAGE, with those that it has. */
+    const char *present_mode;
+};
+/* The device must have been created with a surface, and outlive it. One window a device. */
+enum sf_status sf_window_create(struct sf_device *device, const struct sf_window_options *options,
+                                const struct sf_log *log, struct sf_window **window);
+void sf_window_destroy(struct sf_window **window);
+/* Another size or mode (whatever differs); takes effect with the next sf_window_show. */
+enum sf_status sf_window_set_options(struct sf_window *window, const struct sf_window_options *options);
+struct sf_window_info {
+    uint32_t width, height; /* px of the images shown */
+    uint32_t images;
+    const char *present_mode;
+    const char *present_modes[5]; /* that the surface has; NULL-terminated */
+    uint64_t shown;               /* pictures so far */
+    uint64_t remade;              /* how often the swapchain was made anew */
+};
+void sf_window_describe(const struct sf_window *window, struct sf_window_info *info);
+
+/* Triangles over the picture, three indices each, blended in order. */
+struct sf_overlay_vertex {
+    float x, y;     /* px of the window, y down */
+    float u, v;     /* 0..1 in the font's picture */
+    uint32_t color; /* sRGB with straight alpha, R in the lowest byte */
+};
+struct sf_overlay_batch {
+    float clip[4]; /* px: left, top, right, bottom */
+    uint32_t first_index, index_count;
+};
+struct sf_overlay {
+    const struct sf_overlay_vertex *vertices;
+    const uint32_t *indices; /* of vertices */
+    const struct sf_overlay_batch *batches;
+    uint32_t vertex_count, index_count, batch_count;
+};
+/* The coverage that vertices' colours are multiplied by, [height][width] 0..255. Copied. */
+enum sf_status sf_window_set_font(struct sf_window *window, const uint8_t *coverage, uint32_t width, uint32_t height);
+
+struct sf_window_frame {
+    float x, y, width, height;    /* px: where the picture stands */
+    float background[3];          /* sRGB 0..1, around it */
+    struct sf_renderer *renderer; /* of the same device, made with `shown`: its last picture; NULL: none */
+    const char *tone;             /* as in sf_frame_write_png */
+    float exposure;               /* stops */
+    const uint8_t *pixels; /* [pixels_height][pixels_width][4] sRGB, drawn in place of the renderer's; NULL: none */
+    uint32_t pixels_width, pixels_height;
+    const struct sf_overlay *overlay; /* may be NULL */
+};
+/* Draws and presents. A minimised window does nothing. A swapchain that is out of date or suboptimal is made anew, a lost
+ * surface too, a bounded number of times. The 8-bit values of the picture are those of sf_frame_write_png to within 1
+ * when width and height are the renderer's. */
+enum sf_status sf_window_show(struct sf_window *window, const struct sf_window_frame *frame);
 
 /* ---- measuring ---- */
 
