@@ -102,27 +102,24 @@ void sf_param_document_text(const struct sf_param_group *root, struct sf_text *t
 
 /* ---- markdown ---- */
 
-static const char *rebuild_name(unsigned rebuild)
+/* `inherited`: the bits of the lists and objects that the row stands in. */
+static void markdown_row(const struct sf_param *row, bool typed, unsigned inherited, struct sf_text *text)
 {
-    if (rebuild & SF_REBUILD_ASSETS)
-        return "files";
-    if (rebuild & SF_REBUILD_SIM)
-        return "simulation";
-    return rebuild & SF_REBUILD_GRAPH ? "graph" : "";
-}
+    unsigned bits = row->rebuild | inherited;
 
-static void markdown_row(const struct sf_param *row, bool typed, struct sf_text *text)
-{
+    if (row->type == SF_PARAM_LIST) /* a list that grows or shrinks */
+        bits |= sf_param_rebuild_all(row->group);
     sf_text_printf(text, "| `%s` | %s | ", row->key, type_name(row));
     default_text(row, text);
     sf_text_append(text, " | ");
     allowed_text(row, text);
     if (typed)
         sf_text_printf(text, " | %s", row->only_for ? row->only_for : "all");
-    sf_text_printf(text, " | %s | %s |\n", rebuild_name(row->rebuild), row->doc);
+    sf_text_printf(text, " | %s | %s |\n", sf_param_renews(bits), row->doc);
 }
 
-static void markdown_group(const char *path, const struct sf_param_group *group, struct sf_text *text)
+static void markdown_group(const char *path, const struct sf_param_group *group, unsigned inherited,
+                           struct sf_text *text)
 {
     bool typed = sf_param_kind(group) != NULL;
 
@@ -130,7 +127,7 @@ static void markdown_group(const char *path, const struct sf_param_group *group,
     sf_text_printf(text, "| key | value | default | allowed%s | renews | meaning |\n|---|---|---|---%s|---|---|\n",
                    typed ? " | types" : "", typed ? "|---" : "");
     for (size_t i = 0; i < group->count; i++)
-        markdown_row(&group->rows[i], typed, text);
+        markdown_row(&group->rows[i], typed, inherited, text);
     for (size_t i = 0; i < group->count; i++) {
         const struct sf_param *row = &group->rows[i];
         struct sf_text deeper = {0};
@@ -142,7 +139,7 @@ static void markdown_group(const char *path, const struct sf_param_group *group,
         if (deeper.failed)
             text->failed = true;
         else
-            markdown_group(deeper.data, row->group, text);
+            markdown_group(deeper.data, row->group, inherited | row->rebuild, text);
         sf_text_finish(&deeper);
     }
 }
@@ -157,11 +154,11 @@ void sf_param_document_markdown(const struct sf_param_group *root, struct sf_tex
         "Every key of a scene file, by object. [scene.md](scene.md) says what they mean together. The same names",
         "serve `--set`, with dots: `--set thick.steps=24`, `--set lights.0.intensity=3`,",
         "`--set medium.albedo=0.9,0.9,0.8`. `types` are the values of the object's `type` that take the key. `renews`",
-        "is what a change while running makes anew: the frame's graph, the simulation from its beginning, or what was",
-        "read from files; nothing where empty.",
+        "is the most that a change while running makes anew: the simulation from its beginning, the frame's graph, or",
+        "what was read from files; nothing where empty.",
     };
 
     for (size_t i = 0; i < SF_COUNT(intro); i++)
         sf_text_printf(text, "%s\n", intro[i]);
-    markdown_group("scene", root, text);
+    markdown_group("scene", root, 0, text);
 }

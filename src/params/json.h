@@ -39,10 +39,20 @@ enum sf_status sf_param_read(struct sf_param_reader *reader, const struct sf_par
                              void *object);
 
 /* Applies set->text to the tree whose root is described by `root`, and notes the place in set->pointer. Types and
- * ranges are checked; whether the object at hand takes the key is found by the reading. SF_ERROR_USAGE; SF_ERROR_SCENE
- * when the tree itself is not of the shape that its rows say. */
+ * ranges are checked; whether the object at hand takes the key is found by the reading. A set of an object's "type" to
+ * another one takes the keys out of the object that the new type does not take, but for those that the sets applied
+ * before (reader->sets, set_count of them) have written to. An empty string takes a key away that is not required.
+ * SF_ERROR_USAGE; SF_ERROR_SCENE when the tree itself is not of the shape that its rows say. */
 enum sf_status sf_param_apply_set(struct sf_param_reader *reader, const struct sf_param_group *root, json_t *tree,
                                   struct sf_param_set *set);
+
+/* Takes keys whose values are their rows' defaults out of a tree that can be read, and objects that are empty then.
+ * What must be given stays, and elements of lists do. */
+void sf_param_prune(const struct sf_param_group *group, json_t *json);
+
+/* Appends the tree as people read it: below the outermost object, what fits on a line of 120 columns stands on one, and
+ * lists of numbers always do. Numbers keep their bits. */
+void sf_param_write(const json_t *json, struct sf_text *text);
 
 /* Copies `text` with everything but printable characters replaced, for messages; cut with "..." when longer than `size`
  * - 1. */

@@ -116,6 +116,17 @@ void sf_number_print(float value, char buffer[SF_NUMBER_BYTES])
     }
 }
 
+void sf_number_print_double(double value, char buffer[SF_NUMBER_BYTES])
+{
+    double read = 0;
+
+    for (int precision = DBL_DIG; precision <= DBL_DECIMAL_DIG; precision++) {
+        print(value, precision, buffer);
+        if (sf_number_parse(buffer, strlen(buffer), &read) && read == value)
+            return;
+    }
+}
+
 void sf_number_show(double value, char buffer[SF_NUMBER_BYTES])
 {
     print(value, 7, buffer);

@@ -110,6 +110,32 @@ void sf_param_store(const struct sf_param *row, const double *values, void *obje
     }
 }
 
+unsigned sf_param_fetch(const struct sf_param *row, const void *object, double values[3])
+{
+    const char *field = (const char *)object + row->offset;
+    unsigned n = sf_param_components(row);
+    float numbers[3];
+    int32_t whole;
+    bool truth;
+
+    switch (row->type) {
+    case SF_PARAM_BOOL:
+        memcpy(&truth, field, sizeof truth);
+        values[0] = truth;
+        break;
+    case SF_PARAM_INT:
+    case SF_PARAM_ENUM:
+        memcpy(&whole, field, sizeof whole);
+        values[0] = whole;
+        break;
+    default:
+        memcpy(numbers, field, n * sizeof numbers[0]);
+        for (unsigned i = 0; i < n; i++)
+            values[i] = numbers[i];
+    }
+    return n;
+}
+
 void sf_param_range_text(const struct sf_param *row, char buffer[SF_PARAM_RANGE_BYTES])
 {
     struct {

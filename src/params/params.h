@@ -35,6 +35,7 @@ enum sf_rebuild {
     SF_REBUILD_GRAPH = 1,  /* the frame graph's shape */
     SF_REBUILD_SIM = 2,    /* the simulation restarts from frame 0 */
     SF_REBUILD_ASSETS = 4, /* meshes, environment, textures are loaded again */
+    SF_REBUILD_READ = 8,   /* in answers to "what differs" only, never in a row: something differs at all */
 };
 
 struct sf_param_group;
@@ -47,6 +48,7 @@ struct sf_param {
     double min, max;          /* inclusive; each component of a vector */
     const char *unit;         /* "m", "1/m", "deg", "" */
     const char *const *names; /* enum: NULL-terminated */
+    /* enum sf_rebuild bits. Those of a list or an object hold for all that is in it as well. */
     unsigned rebuild;
     bool required;        /* the key must be given (by the types that take it) */
     const char *doc;      /* one line */
@@ -93,6 +95,17 @@ unsigned sf_param_components(const struct sf_param *row);
 bool sf_param_in_range(const struct sf_param *row, double value);
 /* Stores numbers that have been checked; `values` has sf_param_components() of them (bool 0/1, enum index). */
 void sf_param_store(const struct sf_param *row, const double *values, void *object);
+/* The numbers that the field holds, as sf_param_store takes them; returns how many. */
+unsigned sf_param_fetch(const struct sf_param *row, const void *object, double values[3]);
+/* What differs between two structs of the group: the bits of all rows whose values do, each with `inherited` and those
+ * of the lists and objects that it stands in; strings by contents; of lists that are not equally long, the bits of all
+ * rows of their elements. SF_REBUILD_READ is among them; 0 when all values have the same bits. */
+unsigned sf_param_difference(const struct sf_param_group *group, const void *before, const void *after,
+                             unsigned inherited);
+/* The bits of all rows of the group, and of the groups in it. */
+unsigned sf_param_rebuild_all(const struct sf_param_group *group);
+/* The most that the bits make anew, as people read it: "simulation", "graph", "files" or "". */
+const char *sf_param_renews(unsigned rebuild);
 /* "1 to 170 deg" into `buffer`. */
 enum { SF_PARAM_RANGE_BYTES = 96 };
 void sf_param_range_text(const struct sf_param *row, char buffer[SF_PARAM_RANGE_BYTES]);

@@ -13,7 +13,9 @@ enum { STEP_BYTES = 64, ROWS_MAX = 64 };
 /* The value as a person would write it in a file: what a set gives and what a file gives hash alike. */
 static json_t *number_json(double value)
 {
-    return value == floor(value) && fabs(value) < 1e15 ? json_integer((json_int_t)value) : json_real(value);
+    bool whole = value == floor(value) && fabs(value) < 1e15;
+
+    return whole && !(value == 0 && signbit(value)) ? json_integer((json_int_t)value) : json_real(value);
 }
 
 static json_t *numbers_json(const char *text, bool one)
@@ -106,9 +108,52 @@ static enum sf_status enter_list(const struct sf_param_reader *reader, const str
     return SF_OK;
 }
 
-/* Parses the value, and puts it under the key of `tree`. */
-static enum sf_status put_value(const struct sf_param_reader *reader, const struct sf_param *row, const char *text,
-                                const struct sf_param_set *set, json_t *tree)
+/* Whether an earlier set wrote to the key of the object at `place` (the first `length` bytes), or to something in it. */
+static bool was_set(const struct sf_param_reader *reader, const char *place, size_t length, const char *key)
+{
+    size_t more = strlen(key);
+
+    for (uint32_t i = 0; i < reader->set_count; i++) {
+        const char *pointer = reader->sets[i].pointer;
+
+        if (strncmp(pointer, place, length) == 0 && pointer[length] == '/' &&
+            strncmp(pointer + length + 1, key, more) == 0 &&
+            (pointer[length + 1 + more] == '\0' || pointer[length + 1 + more] == '/'))
+            return true;
+    }
+    return false;
+}
+
+/* The set makes another kind of the object `tree`: what the file says of it that the new kind does not take goes. What
+ * sets have put there stays, so that the reading refuses it. */
+static void drop_misfits(const struct sf_param_reader *reader, const struct sf_param_group *group,
+                         const struct sf_param *types, const char *name, const struct sf_param_set *set, json_t *tree)
+{
+    size_t place = strlen(set->pointer) - strlen(types->key) - 1;
+    const char *before = json_string_value(json_object_get(tree, types->key)), *key;
+    json_t *value;
+    int32_t kind = 0;
+    void *next;
+
+    if (!before && !types->required)
+        before = types->names[(int)types->value[0]];
+    if (before && strcmp(before, name) == 0)
+        return;
+    while (strcmp(types->names[kind], name) != 0)
+        kind++;
+    json_object_foreach_safe(tree, next, key, value)
+    {
+        const struct sf_param *row = sf_param_find(group, key);
+
+        if (row && !sf_param_applies(group, row, kind) && !was_set(reader, set->pointer, place, key))
+            json_object_del(tree, key);
+    }
+}
+
+/* Parses the value, and puts it under the key of `tree`, an object of the group. */
+static enum sf_status put_value(const struct sf_param_reader *reader, const struct sf_param_group *group,
+                                const struct sf_param *row, const char *text, const struct sf_param_set *set,
+                                json_t *tree)
 {
     union {
         float numbers[3];
@@ -121,12 +166,18 @@ static enum sf_status put_value(const struct sf_param_reader *reader, const stru
     enum sf_status status;
     json_t *value;
 
+    if (row->type == SF_PARAM_STRING && !*text && !row->required) {
+        json_object_del(tree, row->key); /* no name: what a missing key is */
+        return SF_OK;
+    }
     loose.offset = 0;
     snprintf(name, sizeof name, "--set %.200s", set->text);
     if ((status = sf_param_parse(&loose, name, text, &scratch, reader->log)) != SF_OK)
         return status;
     if (!(value = value_json(row, text)))
         return fail(reader, set, "the value is not UTF-8", "", NULL);
+    if (row == sf_param_kind(group))
+        drop_misfits(reader, group, row, text, set, tree);
     if (json_object_set_new(tree, row->key, value) != 0)
         return sf_fail(reader->log, SF_ERROR_MEMORY, "%s: out of memory", reader->name);
     return SF_OK;
@@ -171,7 +222,7 @@ enum sf_status sf_param_apply_set(struct sf_param_reader *reader, const struct s
         } else {
             if (*at != '=')
                 return fail(reader, set, "nothing can follow ", row->key, NULL);
-            return put_value(reader, row, at + 1, set, tree);
+            return put_value(reader, group, row, at + 1, set, tree);
         }
         group = row->group;
         at++; /* the '.' */

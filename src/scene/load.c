@@ -31,36 +31,39 @@ static bool is_bounded(const char *text, size_t bytes)
     return nests <= NESTS_MAX && values <= VALUES_MAX;
 }
 
-static json_t *parse_json(const char *name, const char *text, size_t bytes, const struct sf_log *log)
+enum sf_status sf_scene_parse_json(const char *name, const char *text, size_t bytes, const struct sf_log *log,
+                                   json_t **out)
 {
     char reason[REASON_BYTES];
     json_error_t error;
     json_t *tree;
 
+    *out = NULL;
+    if (bytes > SCENE_BYTES_MAX)
+        return sf_fail(log, SF_ERROR_SCENE,
+                       "%s: %zu bytes; a scene holds at most %d MiB. Long lists of particles go into CSV or PLY files",
+                       name, bytes, SCENE_MIB_MAX);
     if (bytes >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) { /* the mark that some editors put before UTF-8 */
         text += 3;
         bytes -= 3;
     }
-    if (bytes == 0) {
-        sf_fail(log, SF_ERROR_SCENE, "%s: the file is empty; a scene is a JSON object", name);
-        return NULL;
-    }
-    if (!is_bounded(text, bytes)) {
-        sf_fail(log, SF_ERROR_SCENE,
-                "%s: more than %d lists and objects or %d values; long lists go into CSV or PLY files", name, NESTS_MAX,
-                VALUES_MAX);
-        return NULL;
-    }
+    if (bytes == 0)
+        return sf_fail(log, SF_ERROR_SCENE, "%s: the file is empty; a scene is a JSON object", name);
+    if (!is_bounded(text, bytes))
+        return sf_fail(log, SF_ERROR_SCENE,
+                       "%s: more than %d lists and objects or %d values; long lists go into CSV or PLY files", name,
+                       NESTS_MAX, VALUES_MAX);
     tree = json_loadb(text, bytes, JSON_REJECT_DUPLICATES, &error);
     if (!tree) {
         sf_param_clean(error.text, reason, sizeof reason);
-        sf_fail(log, SF_ERROR_SCENE, "%s:%d:%d: %s", name, error.line, error.column, reason);
-    } else if (!json_is_object(tree)) {
-        sf_fail(log, SF_ERROR_SCENE, "%s: a scene is a JSON object: { ... }", name);
-        json_decref(tree);
-        tree = NULL;
+        return sf_fail(log, SF_ERROR_SCENE, "%s:%d:%d: %s", name, error.line, error.column, reason);
     }
-    return tree;
+    if (!json_is_object(tree)) {
+        json_decref(tree);
+        return sf_fail(log, SF_ERROR_SCENE, "%s: a scene is a JSON object: { ... }", name);
+    }
+    *out = tree;
+    return SF_OK;
 }
 
 /* Takes comments and $schema out of the tree, so that they do not count in the hash. The parser has bounded the depth.
@@ -89,24 +92,60 @@ static enum sf_status hash_tree(struct sf_scene *scene, json_t *tree, const stru
     return SF_OK;
 }
 
+enum sf_status sf_scene_apply_sets(struct sf_param_reader *reader, json_t *tree, const char *const *sets,
+                                   uint32_t set_count)
+{
+    enum sf_status status = SF_OK;
+
+    reader->set_count = 0;
+    if (set_count && !(reader->sets = sf_arena_alloc(reader->arena, set_count * sizeof *reader->sets)))
+        return sf_fail(reader->log, SF_ERROR_MEMORY, "%s: out of memory", reader->name);
+    while (reader->set_count < set_count && status == SF_OK) {
+        struct sf_param_set *set = &reader->sets[reader->set_count];
+
+        set->text = sets[reader->set_count];
+        status = sf_param_apply_set(reader, &sf_scene_group, tree, set);
+        reader->set_count++;
+    }
+    return status;
+}
+
+/* Keeps the values as they are now, before anything is made of them. */
+static enum sf_status keep_stated(struct sf_scene *scene, const struct sf_log *log)
+{
+    struct sf_scene *stated = sf_arena_alloc(&scene->arena, sizeof *stated);
+
+    if (!stated)
+        return sf_fail(log, SF_ERROR_MEMORY, "%s: out of memory", scene->path);
+    *stated = *scene;
+    stated->arena = (struct sf_arena){0};
+    /* Camera keys and paths stay as they are; particles take over what their emitter says. */
+    for (uint32_t i = 0; i < stated->emitter_count; i++) {
+        struct sf_emitter *emitter = &stated->emitters[i];
+        size_t bytes = emitter->list_count * sizeof *emitter->list;
+        struct sf_listed *list;
+
+        if (emitter->list_count == 0 || emitter->list_count > SF_CONTROLS_LIST_MAX)
+            continue;
+        if (!(list = sf_arena_alloc(&scene->arena, bytes)))
+            return sf_fail(log, SF_ERROR_MEMORY, "%s: out of memory", scene->path);
+        emitter->list = memcpy(list, emitter->list, bytes);
+    }
+    scene->stated = stated;
+    return SF_OK;
+}
+
 /* From the parsed tree to the scene. */
 static enum sf_status read_tree(struct sf_scene *scene, json_t *tree, const char *const *sets, uint32_t set_count,
                                 const struct sf_log *log)
 {
     struct sf_param_reader reader = {.name = scene->path, .log = log, .arena = &scene->arena};
     struct sf_arena arena;
-    enum sf_status status = SF_OK;
+    enum sf_status status = sf_scene_apply_sets(&reader, tree, sets, set_count);
     const char *path = scene->path;
 
-    if (set_count && !(reader.sets = sf_arena_alloc(&scene->arena, set_count * sizeof *reader.sets)))
-        return sf_fail(log, SF_ERROR_MEMORY, "%s: out of memory", scene->path);
-    for (uint32_t i = 0; i < set_count && status == SF_OK; i++) {
-        reader.sets[i].text = sets[i];
-        status = sf_param_apply_set(&reader, &sf_scene_group, tree, &reader.sets[i]);
-    }
     if (status != SF_OK)
         return status;
-    reader.set_count = set_count;
     /* Reading begins with the defaults of everything, so what is not of the table is put back. */
     arena = scene->arena;
     reader.arena = &arena;
@@ -114,6 +153,8 @@ static enum sf_status read_tree(struct sf_scene *scene, json_t *tree, const char
     reader.arena = &scene->arena;
     scene->arena = arena;
     scene->path = path;
+    if (status == SF_OK)
+        status = keep_stated(scene, log);
     if (status == SF_OK)
         status = hash_tree(scene, tree, log);
     if (status == SF_OK)
@@ -133,12 +174,8 @@ enum sf_status sf_scene_parse(const char *name, const char *text, size_t bytes, 
     json_t *tree;
 
     *out = NULL;
-    if (bytes > SCENE_BYTES_MAX)
-        return sf_fail(log, SF_ERROR_SCENE,
-                       "%s: %zu bytes; a scene holds at most %d MiB. Long lists of particles go into CSV or PLY files",
-                       name, bytes, SCENE_MIB_MAX);
-    if (!(tree = parse_json(name, text, bytes, log)))
-        return SF_ERROR_SCENE;
+    if ((status = sf_scene_parse_json(name, text, bytes, log, &tree)) != SF_OK)
+        return status;
     scene = calloc(1, sizeof *scene);
     if (scene)
         scene->path = sf_arena_strdup(&scene->arena, name);

@@ -126,6 +126,18 @@ void sf_scene_camera(const struct sf_scene *scene, double time, struct sf_camera
     }
 }
 
+void sf_scene_view(const struct sf_scene *scene, double time, struct sf_camera_view *view)
+{
+    struct sf_camera_pose pose;
+
+    sf_scene_camera(scene, time, &pose);
+    memcpy(view->eye, pose.eye, sizeof view->eye);
+    memcpy(view->target, pose.target, sizeof view->target);
+    memcpy(view->up, pose.up, sizeof view->up);
+    view->fov = pose.fov;
+    view->near_clip = pose.near_clip;
+}
+
 void sf_scene_emitter_at(const struct sf_emitter *emitter, double time, float position[3], float velocity[3])
 {
     struct track track = {emitter->path, sizeof *emitter->path, offsetof(struct sf_path_key, position),

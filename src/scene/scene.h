@@ -24,6 +24,7 @@ enum {
     SF_RAMP_MAX = 16,
     SF_PATH_MAX = 64, /* keyframes of a camera or an emitter's path */
     SF_PARTICLES_MAX = 1 << 20,
+    SF_CONTROLS_LIST_MAX = 64, /* elements of a longer list are no controls */
 };
 
 enum sf_camera_kind { SF_CAMERA_FIXED, SF_CAMERA_ORBIT, SF_CAMERA_KEYFRAMES };
@@ -260,12 +261,22 @@ struct sf_scene {
     struct sf_output_settings output;
     struct sf_shadow_settings shadow;
     struct sf_thick_settings thick;
+    /* The values as they were given, before directions are normalised, emitters take the medium's extinction, and files
+     * are read: what controls show. NULL in a scene that was not loaded. */
+    const struct sf_scene *stated;
     struct sf_arena arena;
 };
 
 /* sf_scene_load, sf_scene_parse, sf_scene_destroy, sf_scene_describe: sfumato.h. Errors (SF_ERROR_SCENE; SF_ERROR_IO
  * when the scene file itself cannot be read; SF_ERROR_USAGE for a bad set) name the file, a JSON pointer, what is wrong
  * and the remedy. */
+
+/* What differs between two scenes: bits of enum sf_rebuild (params/params.h), SF_REBUILD_READ among them; 0 when every
+ * picture of the two is the same. Rows count as the table says. Files count by their contents: meshes and environment
+ * pictures that differ are SF_REBUILD_ASSETS, with SF_REBUILD_GRAPH when they are not of the same size and SF_REBUILD_SIM
+ * when an emitter uses the mesh; lists of particles are SF_REBUILD_SIM. Shadow maps have no bit: who draws them compares
+ * what they are drawn from. */
+unsigned sf_scene_difference(const struct sf_scene *before, const struct sf_scene *after);
 
 /* The camera at a moment (fixed, orbit, keyframes resolved). */
 struct sf_camera_pose {

@@ -28,15 +28,15 @@ static const char *const environment_kinds[] = {"sky", "color", "latlong", "cube
 static const struct sf_param environment_rows[] = {
     {ROW_ENUM("type", struct sf_environment, kind, environment_kinds, SF_ENVIRONMENT_SKY,
               "a gradient, one colour, a panorama, six pictures"),
-     .rebuild = SF_REBUILD_ASSETS},
+     .rebuild = SF_REBUILD_GRAPH},
     {ROW_COLOR("zenith", struct sf_environment, zenith, 0.25, 0.42, 0.75, 1e6, "W/(m2 sr)", "radiance straight up"),
-     .only_for = "sky", .rebuild = SF_REBUILD_ASSETS},
+     .only_for = "sky"},
     {ROW_COLOR("horizon", struct sf_environment, horizon, 0.62, 0.7, 0.8, 1e6, "W/(m2 sr)", "radiance at eye level"),
-     .only_for = "sky", .rebuild = SF_REBUILD_ASSETS},
+     .only_for = "sky"},
     {ROW_COLOR("ground", struct sf_environment, ground, 0.2, 0.19, 0.17, 1e6, "W/(m2 sr)", "radiance from below"),
-     .only_for = "sky", .rebuild = SF_REBUILD_ASSETS},
+     .only_for = "sky"},
     {ROW_COLOR("color", struct sf_environment, color, 0.5, 0.5, 0.5, 1e6, "W/(m2 sr)", "the same from everywhere"),
-     .only_for = "color", .rebuild = SF_REBUILD_ASSETS},
+     .only_for = "color"},
     {ROW_STRING("file", struct sf_environment, file, "EXR, HDR or PNG, twice as wide as high, -z in its middle"),
      .only_for = "latlong", .required = true, .rebuild = SF_REBUILD_ASSETS},
     {.key = "files",
@@ -47,11 +47,11 @@ static const struct sf_param environment_rows[] = {
      .only_for = "cube",
      .required = true,
      .rebuild = SF_REBUILD_ASSETS},
-    {ROW_FLOAT("intensity", struct sf_environment, intensity, 1, 0, 1e4, "", "multiplies its radiance"),
-     .rebuild = SF_REBUILD_ASSETS},
+    {ROW_FLOAT("intensity", struct sf_environment, intensity, 1, 0, 1e4, "", "multiplies its radiance")},
     {ROW_FLOAT("rotation", struct sf_environment, rotation, 0, -360, 360, "deg", "turns the pictures about +y"),
-     .only_for = "latlong cube", .rebuild = SF_REBUILD_ASSETS},
-    {ROW_BOOL("visible", struct sf_environment, visible, 1, "drawn behind the scene"), .rebuild = SF_REBUILD_GRAPH},
+     .only_for = "latlong cube"},
+    {ROW_BOOL("visible", struct sf_environment, visible, 1, "drawn behind the scene"),
+     .rebuild = SF_REBUILD_GRAPH | SF_REBUILD_ASSETS}, /* only a picture that is seen is on the device */
     {ROW_COLOR("background", struct sf_environment, background, 0, 0, 0, 1e6, "W/(m2 sr)",
                "drawn behind the scene when the environment is not visible")},
 };
@@ -62,7 +62,7 @@ static const struct sf_param_group environment_group =
 static const struct sf_param sim_rows[] = {
     {ROW_INT("seed", struct sf_sim_settings, seed, 1, 0, INT32_MAX, "",
              "of all randomness: the same seed, the same bits"),
-     .rebuild = SF_REBUILD_SIM},
+     .rebuild = SF_REBUILD_SIM | SF_REBUILD_ASSETS}, /* the atlas of thick is made from it */
     {ROW_INT("capacity", struct sf_sim_settings, capacity, 4096, 1, SF_PARTICLES_MAX, "particles",
              "live particles at most; what is emitted beyond is lost"),
      .rebuild = SF_REBUILD_SIM | SF_REBUILD_GRAPH},
@@ -71,8 +71,7 @@ static const struct sf_param sim_rows[] = {
     {ROW_INT("substeps", struct sf_sim_settings, substeps, 2, 1, 64, "",
              "fixed steps of the simulation from one frame to the next"),
      .rebuild = SF_REBUILD_SIM},
-    {ROW_FLOAT("preroll", struct sf_sim_settings, preroll, 0, 0, 600, "s", "simulated before frame 0"),
-     .rebuild = SF_REBUILD_SIM},
+    {ROW_FLOAT("preroll", struct sf_sim_settings, preroll, 0, 0, 600, "s", "simulated before frame 0")},
 };
 static const struct sf_param_group sim_group =
     GROUP("sim", struct sf_sim_settings, sim_rows, "How the particles are stepped through time.");
@@ -91,11 +90,9 @@ static const struct sf_param shadow_rows[] = {
     {ROW_INT("map_size", struct sf_shadow_settings, map_size, 512, 16, 8192, "px",
              "side of the shadow map of scene on scene and on smoke, per light"),
      .rebuild = SF_REBUILD_GRAPH},
-    {ROW_FLOAT("softness", struct sf_shadow_settings, softness, 1.5, 0, 16, "px", "sigma of the shadow map's blur"),
-     .rebuild = SF_REBUILD_GRAPH},
+    {ROW_FLOAT("softness", struct sf_shadow_settings, softness, 1.5, 0, 16, "px", "sigma of the shadow map's blur")},
     {ROW_FLOAT("exponent", struct sf_shadow_settings, exponent, 40, 1, 80, "",
-               "of the exponential shadow map: larger is sharper, and leaks less light"),
-     .rebuild = SF_REBUILD_GRAPH},
+               "of the exponential shadow map: larger is sharper, and leaks less light")},
 };
 static const struct sf_param_group shadow_group =
     GROUP("shadow", struct sf_shadow_settings, shadow_rows, "Shadows of the scene's objects.");
@@ -106,7 +103,8 @@ static const struct sf_param thick_rows[] = {
               "of the smoke's passes, against the frame's"),
      .rebuild = SF_REBUILD_GRAPH},
     {ROW_INT("steps", struct sf_thick_settings, steps, 8, 1, 256, "",
-             "samples along the camera's ray through the smoke")},
+             "samples along the camera's ray through the smoke"),
+     .rebuild = SF_REBUILD_GRAPH},
     {ROW_FLOAT("blur", struct sf_thick_settings, blur, 4, 0, 38, "px",
                "sigma of the camera view's blur, in pixels of the frame"),
      .rebuild = SF_REBUILD_GRAPH},
@@ -131,7 +129,8 @@ static const struct sf_param thick_rows[] = {
     {ROW_FLOAT("thin", struct sf_thick_settings, thin, 1, 0, 100, "",
                "optical depth across a particle below which its surfaces recede from the depth views; 0: never")},
     {ROW_FLOAT("soft", struct sf_thick_settings, soft, 0, 0, 100, "m",
-               "extra fade of the smoke towards surfaces; 0: none, the smoke is cut there exactly")},
+               "extra fade of the smoke towards surfaces; 0: none, the smoke is cut there exactly"),
+     .rebuild = SF_REBUILD_GRAPH},
     {ROW_FLOAT("life_fade", struct sf_thick_settings, life_fade, 0, 0, 16, "",
                "exponent of the thesis' fade with life; 0: none, emitters fade by themselves")},
     {ROW_BOOL("scene_shadow", struct sf_thick_settings, scene_shadow, 1, "objects cast shadows on the smoke"),
@@ -148,11 +147,9 @@ static const struct sf_param_group thick_group =
 static const char *const methods[] = {"none", "thick", NULL};
 static const struct sf_param scene_rows[] = {
     {ROW_OBJECT("camera", camera, sf_scene_camera_group, "the eye")},
-    {ROW_LIST("lights", struct sf_scene, lights, light_count, sf_scene_light_group, 0, SF_LIGHTS_MAX, "lamps"),
-     .rebuild = SF_REBUILD_GRAPH},
+    {ROW_LIST("lights", struct sf_scene, lights, light_count, sf_scene_light_group, 0, SF_LIGHTS_MAX, "lamps")},
     {ROW_LIST("objects", struct sf_scene, objects, object_count, sf_scene_object_group, 0, SF_OBJECTS_MAX,
-              "solid things"),
-     .rebuild = SF_REBUILD_ASSETS},
+              "solid things")},
     {ROW_OBJECT("medium", medium, medium_group, "the smoke's matter")},
     {ROW_LIST("ramp", struct sf_scene, ramp, ramp_count, ramp_group, 0, SF_RAMP_MAX, "colour over a particle's life")},
     {ROW_LIST("emitters", struct sf_scene, emitters, emitter_count, sf_scene_emitter_group, 0, SF_EMITTERS_MAX,
@@ -163,7 +160,7 @@ static const struct sf_param scene_rows[] = {
      .rebuild = SF_REBUILD_SIM},
     {ROW_OBJECT("environment", environment, environment_group, "light from all around")},
     {ROW_ENUM("method", struct sf_scene, method, methods, SF_METHOD_THICK, "how the smoke is drawn"),
-     .rebuild = SF_REBUILD_GRAPH},
+     .rebuild = SF_REBUILD_GRAPH | SF_REBUILD_ASSETS}, /* methods have textures of their own */
     {ROW_OBJECT("sim", sim, sim_group, "the simulation")},
     {ROW_OBJECT("output", output, output_group, "pictures for the eye")},
     {ROW_OBJECT("shadow", shadow, shadow_group, "shadows of objects")},

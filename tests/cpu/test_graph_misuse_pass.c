@@ -163,6 +163,10 @@ static void copy_small_target(struct parts *p)
 {
     KIT_TRANSFER(p->graph, "p", KIT_USES(FROM(p->history), TO(p->readback)));
 }
+static void front_of_image(struct parts *p)
+{
+    KIT_TRANSFER(p->graph, "p", KIT_USES(FROM(p->image), TO(p->readback)), .transfer = SF_TRANSFER_FRONT);
+}
 static void copy_small_source(struct parts *p)
 {
     KIT_TRANSFER(p->graph, "p", KIT_USES(FROM(p->upload), TO(p->image)));
@@ -269,6 +273,7 @@ static const struct misuse misuses[] = {
     {copy_formats, "'p'", "(rgba16f) to 'other' (r32f)", "of one size"},
     {copy_depth, "'p'", "(d32f) to 'other' (r32f)", "depth goes to depth"},
     {copy_small_target, "'p'", "'readback', which is smaller", "at least as large"},
+    {front_of_image, "'p'", "the front of 'image'", "SF_TRANSFER_COPY"},
     {copy_small_source, "'p'", "does not hold the whole image", "larger"},
     {bad_transfer, "'p'", "transfer", "enum sf_transfer"},
     {fill_two, "'p'", "fill", "one use"},

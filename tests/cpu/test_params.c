@@ -158,6 +158,39 @@ static void round_trip_row(const struct sf_param_group *group, const struct sf_p
     }
 }
 
+/* What is fetched from a field and stored again is the field. */
+static void fetch_row(const struct sf_param_group *group, const struct sf_param *row)
+{
+    char *from = calloc(1, group->size), *to = calloc(1, group->size);
+    double values[3];
+
+    assert_non_null(from);
+    assert_non_null(to);
+    if (sf_param_components(row)) {
+        sf_param_store(row, row->value, from);
+        assert_int_equal(sf_param_fetch(row, from, values), sf_param_components(row));
+        sf_param_store(row, values, to);
+        assert_memory_equal(from, to, group->size);
+    }
+    free(from);
+    free(to);
+}
+
+static void test_fetch(void **state)
+{
+    (void)state;
+    visit(&sf_scene_group, fetch_row);
+}
+
+static void test_renews(void **state)
+{
+    (void)state;
+    assert_string_equal(sf_param_renews(SF_REBUILD_READ), "");
+    assert_string_equal(sf_param_renews(SF_REBUILD_ASSETS), "files");
+    assert_string_equal(sf_param_renews(SF_REBUILD_ASSETS | SF_REBUILD_GRAPH), "graph");
+    assert_string_equal(sf_param_renews(SF_REBUILD_GRAPH | SF_REBUILD_SIM), "simulation");
+}
+
 static void test_print_and_parse_give_the_same_bits(void **state)
 {
     (void)state;
@@ -317,6 +350,22 @@ static void test_numbers(void **state)
         assert_true(sf_number_parse(text, strlen(text), &value));
         assert_true((float)value == single);
     }
+    /* And every double. */
+    for (uint32_t i = 0; i < 50000; i++) {
+        uint64_t bits = (uint64_t)sf_random_u32(2, i, 1) << 32 | sf_random_u32(2, i, 2);
+        double wide;
+
+        memcpy(&wide, &bits, sizeof wide);
+        if (!isfinite(wide))
+            continue;
+        sf_number_print_double(wide, text);
+        assert_true(sf_number_parse(text, strlen(text), &value));
+        assert_memory_equal(&value, &wide, sizeof wide);
+    }
+    sf_number_print_double(0.1, text);
+    assert_string_equal(text, "0.1");
+    sf_number_print_double(-0.0, text);
+    assert_string_equal(text, "-0");
     sf_number_print(0.1f, text);
     assert_string_equal(text, "0.1");
     sf_number_print(16777216.0f, text);
@@ -426,6 +475,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_rows_are_sane),
         cmocka_unit_test(test_print_and_parse_give_the_same_bits),
+        cmocka_unit_test(test_fetch),
+        cmocka_unit_test(test_renews),
         cmocka_unit_test(test_bad_values_are_refused),
         cmocka_unit_test(test_messages_help),
         cmocka_unit_test(test_defaults),

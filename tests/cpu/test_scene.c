@@ -336,13 +336,61 @@ static void test_bad_sets(void **state)
     refuse_set("method=thikc", "did you mean thick?");
     refuse_set("lights.0.inner=3", "/lights/0/inner: type point does not take this key, only spot");
     refuse_set("camera.target=0,1.5,6", "/camera: at 0 s the camera is at its own target");
-    refuse_set("lights.0.type=directional", "/lights/0/type: directional does not take position, which is given");
+    refuse_set("lights.0.type=directional", "/lights/0: direction is missing");
     refuse_set("lights.0.type=spot", "/lights/0: direction is missing");
     refuse_set("environment.file=\xff", "UTF-8");
+    refuse_set("environment.file=", "'' is not a file name"); /* it cannot go: it must be there */
     refuse_set("sim.capacity=1048577", "out of range: 1 to 1048576 particles");
     /* A file that is wrong by itself stays the file's fault. */
     refuse_with("{\"thick\":3}", &wrong_file, 1, SF_ERROR_SCENE, "test.json: /thick: must be an object");
     refuse_with("{\"camera\":3}", &wrong_file, 1, SF_ERROR_SCENE, "test.json: /camera: must be an object");
+}
+
+/* Another type takes along what of the file it does not take. */
+static void test_sets_of_types(void **state)
+{
+    static const char *const orbit = "{\"camera\":{\"type\":\"orbit\",\"eye\":[1,2,3],\"period\":5,\"fov\":50}}";
+    static const char *const keyed = "{\"camera\":{\"type\":\"keyframes\",\"//\":\"a comment\",\"near\":0.5,"
+                                     "\"keys\":[{\"time\":0,\"eye\":[0,1,5],\"target\":[0,0,0]}]}}";
+    static const char *const fixed[] = {"camera.type=fixed", "camera.eye=0,1,5"};
+    static const char *const early[] = {"camera.eye=0,1,5", "camera.type=fixed"};
+    static const char *const spot[] = {"lights.0.direction=0,-1,0", "lights.0.type=directional"};
+    static const char *const own[] = {"camera.period=3", "camera.type=fixed"};
+    static const char *const within[] = {"camera.keys.0.fov=30", "camera.type=fixed"};
+    static const char *const late[] = {"camera.type=fixed", "camera.period=3"};
+    static const char *const same = "camera.type=orbit", *const other = "camera.type=keyframes";
+    struct sf_scene *scene = parse_with(orbit, fixed, 2);
+
+    (void)state;
+    assert_int_equal(scene->camera.kind, SF_CAMERA_FIXED);
+    near3(scene->camera.eye, 0, 1, 5, 0);
+    assert_float_equal(scene->camera.period, 0, 0);
+    assert_float_equal(scene->camera.fov, 50, 0); /* what it takes stays */
+    sf_scene_destroy(&scene);
+    scene = parse_with(keyed, fixed, 2);
+    assert_int_equal(scene->camera.key_count, 0);
+    near3(scene->camera.eye, 0, 1, 5, 0);
+    assert_float_equal(scene->camera.near_clip, 0.5, 0);
+    sf_scene_destroy(&scene);
+    scene = parse_with(keyed, early, 2); /* the new type's keys may come first */
+    near3(scene->camera.eye, 0, 1, 5, 0);
+    sf_scene_destroy(&scene);
+    scene = parse_with(small, spot, 2);
+    assert_int_equal(scene->lights[0].kind, SF_LIGHT_DIRECTIONAL);
+    near3(scene->lights[0].position, 0, 0, 0, 0);
+    assert_float_equal(scene->lights[0].intensity, 2, 0);
+    sf_scene_destroy(&scene);
+    scene = parse_with(orbit, &same, 1);
+    assert_float_equal(scene->camera.period, 5, 0);
+    sf_scene_destroy(&scene);
+    /* What sets have put there is never dropped without a word. */
+    refuse_with(orbit, own, 2, SF_ERROR_USAGE,
+                "--set camera.period=3: /camera/period: type fixed does not take this key");
+    refuse_with(orbit, late, 2, SF_ERROR_USAGE, "--set camera.period=3: /camera/period: type fixed does not take");
+    refuse_with(keyed, within, 2, SF_ERROR_USAGE, "fixed does not take keys, which is given");
+    refuse_with(orbit, &other, 1, SF_ERROR_USAGE, "/camera: keys is missing");
+    /* A file that is wrong by itself stays wrong when the type does not change. */
+    refuse_with("{\"camera\":{\"period\":5}}", &fixed[0], 1, SF_ERROR_USAGE, "fixed does not take period");
 }
 
 static void count_warnings(void *user, enum sf_log_level level, const char *message)
@@ -383,6 +431,7 @@ int main(void)
         cmocka_unit_test(test_hash_counts_files),
         cmocka_unit_test(test_sets),
         cmocka_unit_test(test_bad_sets),
+        cmocka_unit_test(test_sets_of_types),
         cmocka_unit_test(test_warnings),
     };
     return cmocka_run_group_tests(tests, scratch_enter, scratch_leave);
