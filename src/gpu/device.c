@@ -7,6 +7,7 @@
 #include "base/thread.h"
 #include "gpu/fault.h"
 
+static const char PORTABILITY_SUBSET[] = "VK_KHR_portability_subset";
 static const uint64_t DEFAULT_TIMEOUT_NS = 60ull * 1000 * 1000 * 1000;
 
 /* Called by the layer from whatever thread it likes. */
@@ -36,7 +37,8 @@ static enum sf_status create_instance(struct sf_gpu *gpu)
         .pfnUserCallback = on_message,
         .pUserData = gpu,
     };
-    enum sf_status status = sf_instance_create(gpu->validate, gpu->validate ? &messenger : NULL, gpu->log,
+    const struct sf_surface_source *surface = gpu->surface.source.create ? &gpu->surface.source : NULL;
+    enum sf_status status = sf_instance_create(gpu->validate, gpu->validate ? &messenger : NULL, surface, gpu->log,
                                                &gpu->instance, &gpu->debug_utils);
 
     if (status || !gpu->validate)
@@ -45,22 +47,6 @@ static enum sf_status create_instance(struct sf_gpu *gpu)
         return sf_fail(gpu->log, SF_ERROR_DEVICE, "validation was asked for, but VK_EXT_debug_utils is missing");
     return sf_vk_check(gpu, vkCreateDebugUtilsMessengerEXT(gpu->instance, &messenger, NULL, &gpu->messenger), "create",
                        "debug messenger");
-}
-
-static bool has_extension(VkPhysicalDevice physical, const char *name)
-{
-    VkExtensionProperties *extensions;
-    uint32_t count = 0;
-    bool found = false;
-
-    if (vkEnumerateDeviceExtensionProperties(physical, NULL, &count, NULL) != VK_SUCCESS || count == 0)
-        return false;
-    extensions = calloc(count, sizeof *extensions);
-    if (extensions && vkEnumerateDeviceExtensionProperties(physical, NULL, &count, extensions) >= VK_SUCCESS)
-        for (uint32_t i = 0; i < count; i++)
-            found = found || strcmp(extensions[i].extensionName, name) == 0;
-    free(extensions);
-    return found;
 }
 
 static enum sf_status create_device(struct sf_gpu *gpu)
@@ -90,18 +76,21 @@ static enum sf_status create_device(struct sf_gpu *gpu)
         .queueCount = 1,
         .pQueuePriorities = &priority,
     };
-    const char *extensions[] = {"VK_KHR_portability_subset"}; /* must be asked for where it is */
+    const char *extensions[2];
     VkDeviceCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
         .pNext = &features,
         .queueCreateInfoCount = 1,
         .pQueueCreateInfos = &queue,
-        .enabledExtensionCount = has_extension(gpu->physical, extensions[0]) ? 1 : 0,
         .ppEnabledExtensionNames = extensions,
     };
     VkPhysicalDeviceFeatures has;
     enum sf_status status;
 
+    if (sf_has_extension(gpu->physical, PORTABILITY_SUBSET)) /* must be asked for where it is */
+        extensions[info.enabledExtensionCount++] = PORTABILITY_SUBSET;
+    if (gpu->surface.handle)
+        extensions[info.enabledExtensionCount++] = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
     /* Wanted: a pass that needs one of these on a device without it is refused by name when its player is made. */
     vkGetPhysicalDeviceFeatures(gpu->physical, &has);
     features.features.independentBlend = has.independentBlend;
@@ -206,17 +195,23 @@ enum sf_status sf_gpu_create(const struct sf_gpu_options *options, const struct 
     gpu->validate = options->validate;
     gpu->no_cache = options->no_cache;
     gpu->timeout_ns = options->timeout_ns ? options->timeout_ns : DEFAULT_TIMEOUT_NS;
+    if (options->surface)
+        gpu->surface.source = *options->surface;
     status = create_instance(gpu);
     if (!status)
-        status = sf_physical_choose(gpu->instance, options->device, log, &gpu->physical, &gpu->info);
+        status = sf_surface_init(gpu);
+    if (!status)
+        status = sf_physical_choose(gpu->instance, options->device, &gpu->surface, log, &gpu->physical, &gpu->info);
     if (!status) {
         struct sf_gpu_info unused;
 
-        gpu->family = sf_physical_describe(gpu->physical, &unused);
+        gpu->family = sf_physical_describe(gpu->physical, &gpu->surface, &unused);
         gpu->memory.budget = options->budget_bytes ? options->budget_bytes : gpu->info.memory_bytes / 10 * 8;
         read_limits(gpu);
-        status = create_device(gpu);
+        status = sf_surface_learn(gpu);
     }
+    if (!status)
+        status = create_device(gpu);
     if (!status)
         status = create_samplers(gpu);
     if (!status)
@@ -243,6 +238,7 @@ void sf_gpu_destroy(struct sf_gpu **pointer)
         sf_gpu_settle(gpu);
         sf_cache_close(gpu);
         sf_pipelines_finish(gpu);
+        sf_shaders_finish(gpu);
         sf_frames_finish(gpu);
         sf_memory_finish(gpu);
         for (int i = 0; i < SF_SAMPLER_COUNT && !gpu->stuck; i++)
@@ -254,6 +250,7 @@ void sf_gpu_destroy(struct sf_gpu **pointer)
         *pointer = NULL;
         return;
     }
+    sf_surface_finish(gpu);
     if (gpu->messenger)
         vkDestroyDebugUtilsMessengerEXT(gpu->instance, gpu->messenger, NULL);
     if (gpu->instance)

@@ -34,6 +34,12 @@ static const char *result_text(VkResult result)
         return "feature not present";
     case VK_ERROR_FORMAT_NOT_SUPPORTED:
         return "format not supported";
+    case VK_ERROR_SURFACE_LOST_KHR:
+        return "surface lost";
+    case VK_ERROR_OUT_OF_DATE_KHR:
+        return "surface changed";
+    case VK_ERROR_NATIVE_WINDOW_IN_USE_KHR:
+        return "window in use";
     default:
         return "failed";
     }
@@ -60,6 +66,9 @@ static enum sf_status result_status(VkResult result)
     case VK_ERROR_EXTENSION_NOT_PRESENT:
     case VK_ERROR_FEATURE_NOT_PRESENT:
     case VK_ERROR_FORMAT_NOT_SUPPORTED:
+    case VK_ERROR_SURFACE_LOST_KHR:
+    case VK_ERROR_OUT_OF_DATE_KHR:
+    case VK_ERROR_NATIVE_WINDOW_IN_USE_KHR:
         return SF_ERROR_DEVICE;
     default:
         return SF_ERROR_INTERNAL;

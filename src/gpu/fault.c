@@ -132,6 +132,47 @@ static VKAPI_ATTR VkResult VKAPI_CALL shim_vkWaitSemaphores(VkDevice device, con
     return due(SF_FAULT_TIMEOUT) ? VK_TIMEOUT : real.vkWaitSemaphores(device, info, timeout);
 }
 
+static VKAPI_ATTR VkResult VKAPI_CALL shim_vkCreateSwapchainKHR(VkDevice device, const VkSwapchainCreateInfoKHR *info,
+                                                                const VkAllocationCallbacks *callbacks,
+                                                                VkSwapchainKHR *out)
+{
+    if (due(SF_FAULT_SURFACE_LOST))
+        return VK_ERROR_SURFACE_LOST_KHR;
+    return due(SF_FAULT_OBJECT) ? VK_ERROR_OUT_OF_HOST_MEMORY
+                                : made(real.vkCreateSwapchainKHR(device, info, callbacks, out));
+}
+
+static VkResult window_result(VkResult result)
+{
+    if (due(SF_FAULT_OUT_OF_DATE))
+        return VK_ERROR_OUT_OF_DATE_KHR;
+    if (due(SF_FAULT_SURFACE_LOST))
+        return VK_ERROR_SURFACE_LOST_KHR;
+    return result;
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL shim_vkAcquireNextImageKHR(VkDevice device, VkSwapchainKHR swapchain,
+                                                                 uint64_t timeout, VkSemaphore semaphore, VkFence fence,
+                                                                 uint32_t *index)
+{
+    VkResult result = due(SF_FAULT_BUSY) ? VK_TIMEOUT : window_result(VK_SUCCESS);
+
+    if (result == VK_SUCCESS)
+        result = real.vkAcquireNextImageKHR(device, swapchain, timeout, semaphore, fence, index);
+    return due(SF_FAULT_SUBOPTIMAL) && result == VK_SUCCESS ? VK_SUBOPTIMAL_KHR : result;
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL shim_vkQueuePresentKHR(VkQueue queue, const VkPresentInfoKHR *info)
+{
+    VkResult result = window_result(real.vkQueuePresentKHR(queue, info));
+
+    if (due(SF_FAULT_PRESENT))
+        return VK_ERROR_DEVICE_LOST;
+    return due(SF_FAULT_SUBOPTIMAL) && result == VK_SUCCESS ? VK_SUBOPTIMAL_KHR : result;
+}
+
+SHIM_DESTROY(vkDestroySwapchainKHR, VkSwapchainKHR)
+
 void sf_fault_wrap(struct VolkDeviceTable *table)
 {
     if (!wrapping)
@@ -173,6 +214,10 @@ void sf_fault_wrap(struct VolkDeviceTable *table)
     WRAP(vkAllocateCommandBuffers);
     WRAP(vkQueueSubmit2);
     WRAP(vkWaitSemaphores);
+    WRAP(vkCreateSwapchainKHR);
+    WRAP(vkDestroySwapchainKHR);
+    WRAP(vkAcquireNextImageKHR);
+    WRAP(vkQueuePresentKHR);
 #undef WRAP
 }
 

@@ -92,24 +92,38 @@ static VkResult wait_timeline(struct sf_gpu *gpu, VkSemaphore semaphore, uint64_
     return gpu->vk.vkWaitSemaphores(gpu->device, &info, gpu->timeout_ns);
 }
 
-static VkResult submit(struct sf_gpu *gpu, VkCommandBuffer commands, VkSemaphore semaphore, uint64_t value)
+/* Signals the timeline; waits for and signals what `showing` names. */
+static VkResult submit(struct sf_gpu *gpu, VkCommandBuffer commands, VkSemaphore timeline, uint64_t value,
+                       struct sf_showing showing)
 {
     VkCommandBufferSubmitInfo buffer = {
         .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
         .commandBuffer = commands,
     };
-    VkSemaphoreSubmitInfo signal = {
+    VkSemaphoreSubmitInfo wait = {
         .sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
-        .semaphore = semaphore,
-        .value = value,
-        .stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+        .semaphore = showing.acquired,
+        .stageMask = sf_scope_of((struct sf_touch){SF_ACCESS_PRESENT, SF_PASS_TRANSFER}).stages,
     };
+    VkSemaphoreSubmitInfo signals[] = {{
+                                           .sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
+                                           .semaphore = timeline,
+                                           .value = value,
+                                           .stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                       },
+                                       {
+                                           .sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
+                                           .semaphore = showing.drawn,
+                                           .stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                                       }};
     VkSubmitInfo2 info = {
         .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
+        .waitSemaphoreInfoCount = showing.acquired ? 1 : 0,
+        .pWaitSemaphoreInfos = &wait,
         .commandBufferInfoCount = 1,
         .pCommandBufferInfos = &buffer,
-        .signalSemaphoreInfoCount = 1,
-        .pSignalSemaphoreInfos = &signal,
+        .signalSemaphoreInfoCount = showing.drawn ? 2 : 1,
+        .pSignalSemaphoreInfos = signals,
     };
 
     return gpu->vk.vkQueueSubmit2(gpu->queue, 1, &info, VK_NULL_HANDLE);
@@ -171,6 +185,7 @@ enum sf_status sf_frame_end(struct sf_gpu *gpu, uint64_t *serial)
 {
     uint64_t next = atomic_load(&gpu->submitted) + 1;
     struct sf_frame_slot *slot = sf_frame_slot_now(gpu);
+    struct sf_showing showing = {VK_NULL_HANDLE, VK_NULL_HANDLE};
     enum sf_status status = sf_gpu_refuse_lost(gpu);
 
     if (serial)
@@ -178,17 +193,22 @@ enum sf_status sf_frame_end(struct sf_gpu *gpu, uint64_t *serial)
     if (!gpu->recording)
         return sf_fail(gpu->log, SF_ERROR_USAGE, "a frame is ended that was not begun");
     gpu->recording = false;
-    if (!status)
+    if (!status) {
+        showing = sf_swapchain_close_frame(gpu, slot->commands);
         status = sf_vk_check(gpu, gpu->vk.vkEndCommandBuffer(slot->commands), "end the commands of", "frame");
+    }
     if (!status)
-        status = sf_vk_check(gpu, submit(gpu, slot->commands, gpu->timeline, next), "submit", "frame");
+        status = sf_vk_check(gpu, submit(gpu, slot->commands, gpu->timeline, next, showing), "submit", "frame");
+    if (!status) {
+        atomic_store(&gpu->submitted, next);
+        status = sf_swapchain_present(gpu);
+    }
     if (status) {
         /* What was recorded never runs, but the players have taken it for done (histories flipped): there is no way on.
          */
         atomic_store(&gpu->lost, status);
         return status;
     }
-    atomic_store(&gpu->submitted, next);
     if (serial)
         *serial = next;
     return SF_OK;
@@ -255,14 +275,15 @@ enum sf_status sf_setup_end(struct sf_gpu *gpu, const char *name)
         .memoryBarrierCount = 1,
         .pMemoryBarriers = &barrier,
     };
+    const struct sf_showing nothing = {VK_NULL_HANDLE, VK_NULL_HANDLE};
     enum sf_status status;
     VkResult result;
 
     gpu->vk.vkCmdPipelineBarrier2(gpu->setup_commands, &dependency);
     status = sf_vk_check(gpu, gpu->vk.vkEndCommandBuffer(gpu->setup_commands), "end the commands of", name);
     if (!status)
-        status = sf_vk_check(gpu, submit(gpu, gpu->setup_commands, gpu->setup_timeline, gpu->setup_count + 1), "submit",
-                             name);
+        status = sf_vk_check(gpu, submit(gpu, gpu->setup_commands, gpu->setup_timeline, gpu->setup_count + 1, nothing),
+                             "submit", name);
     if (status)
         return status;
     gpu->setup_count++;

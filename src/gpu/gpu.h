@@ -76,6 +76,10 @@ void sf_gpu_buffer_destroy(struct sf_gpu_buffer **buffer);
 enum sf_status sf_gpu_image_create(struct sf_gpu *gpu, const char *name, enum sf_format format, uint32_t width,
                                    uint32_t height, uint32_t layers, enum sf_access outside, const void *data,
                                    struct sf_gpu_image **image);
+/* Of a colour format, for graphs that draw it: `accesses` is a bit set of 1u << enum sf_access. Zeros at first. */
+enum sf_status sf_gpu_image_create_target(struct sf_gpu *gpu, const char *name, enum sf_format format, uint32_t width,
+                                          uint32_t height, uint32_t accesses, enum sf_access outside,
+                                          struct sf_gpu_image **image);
 void sf_gpu_image_destroy(struct sf_gpu_image **image);
 
 /* ---- playing graphs ---- */
@@ -112,7 +116,7 @@ enum sf_status sf_gpu_wait_idle(struct sf_gpu *gpu);
 const void *sf_player_readback(struct sf_player *player, sf_resource resource, uint64_t serial);
 void sf_player_set_readback_depth(struct sf_player *player, uint32_t frames); /* before the first play */
 
-/* ---- shaders at run time: as sf_device_set_shader ---- */
+/* ---- shaders at run time: as sf_device_set_shader; not while a frame is open (SF_ERROR_USAGE) ---- */
 enum sf_status sf_gpu_set_shader(struct sf_gpu *gpu, const char *name, const uint32_t *words, size_t bytes);
 
 /* ---- showing: images of the device's surface ---- */
@@ -135,14 +139,18 @@ enum sf_status sf_swapchain_modes(struct sf_gpu *gpu, uint32_t *modes);
 enum sf_status sf_swapchain_create(struct sf_gpu *gpu, uint32_t width, uint32_t height, enum sf_present_mode mode,
                                    struct sf_swapchain **swapchain);
 void sf_swapchain_destroy(struct sf_swapchain **swapchain); /* waits for idle */
-/* Images anew, of another size or mode, on a new surface when the old one was lost. */
+/* Images anew, of another size or mode, on a new surface when the old one was lost. When the mode is not there
+ * (SF_ERROR_USAGE), everything stays; on other failures, and when the new surface is lost again (SF_OK), there are no
+ * images until the next renewal. Waits for idle. */
 enum sf_status sf_swapchain_renew(struct sf_swapchain *swapchain, uint32_t width, uint32_t height,
                                   enum sf_present_mode mode);
 void sf_swapchain_extent(const struct sf_swapchain *swapchain, uint32_t *width, uint32_t *height, uint32_t *images,
                          enum sf_format *format);
 /* The image to draw this frame into, between sf_frame_begin and sf_frame_end: imported with outside SF_ACCESS_PRESENT,
  * its old contents gone. sf_frame_end then submits and presents it. *image NULL with SF_OK: the swapchain no longer fits
- * its surface (or the surface is lost, or nothing came free in 1 s): end the frame without it, renew, try again. */
+ * its surface (or the surface is lost, or nothing came free in 1 s): end the frame without it, renew, try again. At most
+ * one a frame. The first play that draws it must clear or discard it; when none does, it is shown black. The swapchain
+ * cannot be renewed before the frame's end; destroying it before loses the frame, and the device with it. */
 enum sf_status sf_swapchain_acquire(struct sf_swapchain *swapchain, struct sf_gpu_image **image);
 /* True when the last present said that the images no longer fit well: renew when convenient (a size that has not changed
  * is no reason to try again: lavapipe says so for ever). */

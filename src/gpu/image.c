@@ -98,18 +98,29 @@ const char *sf_vk_image_misfit(const struct sf_gpu *gpu, enum sf_format format, 
     return NULL;
 }
 
+enum sf_status sf_vk_image_view_init(struct sf_gpu *gpu, const char *name, struct sf_vk_image *image)
+{
+    VkImageViewCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+        .image = image->handle,
+        .viewType = image->layers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D,
+        .format = sf_vk_format(image->format),
+        .subresourceRange = sf_vk_image_range(image->format),
+    };
+    enum sf_status status = sf_vk_check(gpu, gpu->vk.vkCreateImageView(gpu->device, &info, NULL, &image->view),
+                                        "create a view of the image", name);
+
+    if (!status)
+        sf_vk_name(gpu, VK_OBJECT_TYPE_IMAGE_VIEW, SF_VK_HANDLE(image->view), name);
+    return status;
+}
+
 enum sf_status sf_vk_image_init(struct sf_gpu *gpu, const char *name, const VkImageCreateInfo *info,
                                 enum sf_format format, const struct sf_place *home, uint64_t offset,
                                 struct sf_vk_image *image)
 {
     const VkImageUsageFlags viewed = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT |
                                      VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
-    VkImageViewCreateInfo view = {
-        .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
-        .viewType = info->arrayLayers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D,
-        .format = info->format,
-        .subresourceRange = sf_vk_image_range(format),
-    };
     VkMemoryRequirements needs;
     enum sf_status status = sf_gpu_refuse_lost(gpu);
 
@@ -137,12 +148,7 @@ enum sf_status sf_vk_image_init(struct sf_gpu *gpu, const char *name, const VkIm
                     "bind memory to the image", name);
     if (status || !(info->usage & viewed))
         return status;
-    view.image = image->handle;
-    status = sf_vk_check(gpu, gpu->vk.vkCreateImageView(gpu->device, &view, NULL, &image->view),
-                         "create a view of the image", name);
-    if (!status)
-        sf_vk_name(gpu, VK_OBJECT_TYPE_IMAGE_VIEW, SF_VK_HANDLE(image->view), name);
-    return status;
+    return sf_vk_image_view_init(gpu, name, image);
 }
 
 void sf_vk_image_finish(struct sf_gpu *gpu, struct sf_vk_image *image)
@@ -180,7 +186,7 @@ static void layout_barrier(struct sf_gpu *gpu, VkCommandBuffer commands, const s
     gpu->vk.vkCmdPipelineBarrier2(commands, &dependency);
 }
 
-/* Fills the image by way of a mapped buffer and leaves it in the layout of `outside`. */
+/* Fills the image by way of a mapped buffer, or with zeros, and leaves it in the layout of `outside`. */
 static enum sf_status image_fill(struct sf_gpu_image *image, const void *data)
 {
     struct sf_gpu *gpu = image->gpu;
@@ -191,18 +197,25 @@ static enum sf_status image_fill(struct sf_gpu_image *image, const void *data)
         .imageSubresource = sf_vk_image_layers(vk->format, vk->layers),
         .imageExtent = {vk->width, vk->height, 1},
     };
+    VkImageSubresourceRange range = sf_vk_image_range(vk->format);
     VkCommandBuffer commands;
-    enum sf_status status = sf_vk_buffer_init(gpu, image->name, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-                                              SF_MEMORY_UPLOAD, NULL, 0, &staging);
+    enum sf_status status = SF_OK;
 
-    if (!status) {
+    if (data)
+        status = sf_vk_buffer_init(gpu, image->name, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, SF_MEMORY_UPLOAD, NULL, 0,
+                                   &staging);
+    if (!status && data)
         memcpy(staging.place.mapped, data, bytes);
+    if (!status)
         status = sf_setup_begin(gpu, image->name, &commands);
-    }
     if (!status) {
         layout_barrier(gpu, commands, vk, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL);
-        gpu->vk.vkCmdCopyBufferToImage(commands, staging.handle, vk->handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
-                                       &region);
+        if (data)
+            gpu->vk.vkCmdCopyBufferToImage(commands, staging.handle, vk->handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                           1, &region);
+        else
+            gpu->vk.vkCmdClearColorImage(commands, vk->handle, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                         &(VkClearColorValue){.float32 = {0}}, 1, &range);
         layout_barrier(gpu, commands, vk, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                        sf_vk_layout(image->outside, vk->format));
         status = sf_setup_end(gpu, image->name);
@@ -211,27 +224,24 @@ static enum sf_status image_fill(struct sf_gpu_image *image, const void *data)
     return status;
 }
 
-enum sf_status sf_gpu_image_create(struct sf_gpu *gpu, const char *name, enum sf_format format, uint32_t width,
-                                   uint32_t height, uint32_t layers, enum sf_access outside, const void *data,
+/* `data` NULL: zeros. */
+static enum sf_status create_image(struct sf_gpu *gpu, const char *name, const VkImageCreateInfo *info,
+                                   enum sf_format format, enum sf_access outside, const void *data,
                                    struct sf_gpu_image **out)
 {
-    VkImageUsageFlags usage = sf_vk_image_usage(1u << SF_ACCESS_SAMPLED | 1u << SF_ACCESS_TRANSFER_READ |
-                                                1u << SF_ACCESS_TRANSFER_WRITE | 1u << outside);
     uint32_t side = gpu->limits.maxImageDimension2D, most = gpu->limits.maxImageArrayLayers;
-    VkImageCreateInfo info;
+    uint32_t width = info->extent.width, height = info->extent.height, layers = info->arrayLayers;
     struct sf_gpu_image *image;
     const char *misfit;
     enum sf_status status;
 
     *out = NULL;
-    if (layers == 0)
-        layers = 1;
     if (width == 0 || height == 0 || width > side || height > side || layers > most)
         return sf_fail(
             gpu->log, SF_ERROR_USAGE,
             "the image '%s' cannot be %u x %u pixels in %u layers: this device takes 1 to %u a side, %u layers", name,
             width, height, layers, side, most);
-    misfit = sf_vk_image_misfit(gpu, format, usage, false, false);
+    misfit = sf_vk_image_misfit(gpu, format, info->usage, info->usage & VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT, false);
     if (misfit)
         return sf_fail(gpu->log, SF_ERROR_DEVICE, "the device does not support %s of %s, the format of the image '%s'",
                        misfit, sf_format_name(format), name);
@@ -242,14 +252,34 @@ enum sf_status sf_gpu_image_create(struct sf_gpu *gpu, const char *name, enum sf
     }
     image->gpu = gpu;
     image->outside = outside;
-    info = sf_vk_image_info(format, width, height, layers, usage);
-    status = sf_vk_image_init(gpu, name, &info, format, NULL, 0, &image->image);
+    status = sf_vk_image_init(gpu, name, info, format, NULL, 0, &image->image);
     if (!status)
         status = image_fill(image, data);
     if (status)
         sf_gpu_image_destroy(&image);
     *out = image;
     return status;
+}
+
+enum sf_status sf_gpu_image_create(struct sf_gpu *gpu, const char *name, enum sf_format format, uint32_t width,
+                                   uint32_t height, uint32_t layers, enum sf_access outside, const void *data,
+                                   struct sf_gpu_image **image)
+{
+    VkImageUsageFlags usage = sf_vk_image_usage(1u << SF_ACCESS_SAMPLED | 1u << SF_ACCESS_TRANSFER_READ |
+                                                1u << SF_ACCESS_TRANSFER_WRITE | 1u << outside);
+    VkImageCreateInfo info = sf_vk_image_info(format, width, height, layers > 0 ? layers : 1, usage);
+
+    return create_image(gpu, name, &info, format, outside, data, image);
+}
+
+enum sf_status sf_gpu_image_create_target(struct sf_gpu *gpu, const char *name, enum sf_format format, uint32_t width,
+                                          uint32_t height, uint32_t accesses, enum sf_access outside,
+                                          struct sf_gpu_image **image)
+{
+    VkImageUsageFlags usage = sf_vk_image_usage(accesses | 1u << SF_ACCESS_TRANSFER_WRITE | 1u << outside);
+    VkImageCreateInfo info = sf_vk_image_info(format, width, height, 1, usage);
+
+    return create_image(gpu, name, &info, format, outside, NULL, image);
 }
 
 void sf_gpu_image_destroy(struct sf_gpu_image **pointer)

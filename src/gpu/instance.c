@@ -28,12 +28,63 @@ static bool has_layer(const char *name)
     return found;
 }
 
+static VkResult list_extensions(VkPhysicalDevice physical, uint32_t *count, VkExtensionProperties *extensions)
+{
+    return physical ? vkEnumerateDeviceExtensionProperties(physical, NULL, count, extensions)
+                    : vkEnumerateInstanceExtensionProperties(NULL, count, extensions);
+}
+
+bool sf_has_extension(VkPhysicalDevice physical, const char *name)
+{
+    VkExtensionProperties *extensions;
+    uint32_t count = 0;
+    bool found = false;
+
+    if (list_extensions(physical, &count, NULL) != VK_SUCCESS || count == 0)
+        return false;
+    extensions = calloc(count, sizeof *extensions);
+    if (extensions && list_extensions(physical, &count, extensions) >= VK_SUCCESS)
+        for (uint32_t i = 0; i < count; i++)
+            found = found || strcmp(extensions[i].extensionName, name) == 0;
+    free(extensions);
+    return found;
+}
+
+/* With the extensions that the surface needs, and as many of those that are good to have as can be had. Asking which
+ * there are makes the loader open every driver, and close it again: rather ask for them, and for fewer when it says no.
+ */
+static VkResult create_with(VkInstanceCreateInfo *info, const struct sf_surface_source *surface, VkInstance *instance,
+                            bool *debug_utils)
+{
+    static const char *const wanted[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME,
+                                         VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME};
+    uint32_t needed = surface ? surface->extension_count : 0;
+    const char **names = calloc(needed + SF_COUNT(wanted), sizeof *names);
+    VkResult result = VK_ERROR_EXTENSION_NOT_PRESENT;
+
+    if (!names)
+        return VK_ERROR_OUT_OF_HOST_MEMORY;
+    for (uint32_t i = 0; i < needed; i++)
+        names[i] = surface->extensions[i];
+    for (uint32_t i = 0; i < SF_COUNT(wanted); i++)
+        names[needed + i] = wanted[i];
+    info->ppEnabledExtensionNames = names;
+    for (uint32_t count = SF_COUNT(wanted) + 1; count-- > 0 && result == VK_ERROR_EXTENSION_NOT_PRESENT;) {
+        info->enabledExtensionCount = needed + count;
+        info->flags = count == SF_COUNT(wanted) ? VK_INSTANCE_CREATE_ENUMERATE_PORTABILITY_BIT_KHR : 0;
+        *debug_utils = count > 0;
+        result = vkCreateInstance(info, NULL, instance);
+    }
+    free(names);
+    return result;
+}
+
 static enum sf_status create_locked(bool validate, const VkDebugUtilsMessengerCreateInfoEXT *messenger,
-                                    const struct sf_log *log, VkInstance *instance, bool *debug_utils)
+                                    const struct sf_surface_source *surface, const struct sf_log *log,
+                                    VkInstance *instance, bool *debug_utils)
 {
     static const VkValidationFeatureEnableEXT enables[] = {VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
     const char *layers[] = {VALIDATION_LAYER};
-    const char *extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME};
     VkApplicationInfo application = {
         .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
         .pApplicationName = "sfumato",
@@ -50,7 +101,6 @@ static enum sf_status create_locked(bool validate, const VkDebugUtilsMessengerCr
         .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
         .pApplicationInfo = &application,
         .ppEnabledLayerNames = layers,
-        .ppEnabledExtensionNames = extensions,
     };
     VkResult result;
 
@@ -67,18 +117,16 @@ static enum sf_status create_locked(bool validate, const VkDebugUtilsMessengerCr
         info.enabledLayerCount = 1;
         info.pNext = &features;
     }
-    /* Asking which extensions there are makes the loader open every driver, and close it again: rather ask for them,
-     * and for fewer when it says no. */
-    result = VK_ERROR_EXTENSION_NOT_PRESENT;
-    for (uint32_t count = SF_COUNT(extensions) + 1; count-- > 0 && result == VK_ERROR_EXTENSION_NOT_PRESENT;) {
-        info.enabledExtensionCount = count;
-        info.flags = count == SF_COUNT(extensions) ? VK_INSTANCE_CREATE_ENUMERATE_PORTABILITY_BIT_KHR : 0;
-        *debug_utils = count > 0;
-        result = vkCreateInstance(&info, NULL, instance);
-    }
+    result = create_with(&info, surface, instance, debug_utils);
     if (result == VK_ERROR_INCOMPATIBLE_DRIVER)
         return sf_fail(log, SF_ERROR_DEVICE,
                        "no Vulkan driver: install one for your GPU, or the package mesa-vulkan-drivers for the CPU");
+    for (uint32_t i = 0; result == VK_ERROR_EXTENSION_NOT_PRESENT && surface && i < surface->extension_count; i++)
+        if (!sf_has_extension(VK_NULL_HANDLE, surface->extensions[i]))
+            return sf_fail(log, SF_ERROR_DEVICE,
+                           "the window needs the Vulkan extension %s, which no driver here has: bring libvulkan1 and "
+                           "the driver up to date",
+                           surface->extensions[i]);
     if (result != VK_SUCCESS)
         return sf_vk_fail(log, result, "create", "Vulkan instance");
     volkLoadInstanceOnly(*instance);
@@ -86,12 +134,13 @@ static enum sf_status create_locked(bool validate, const VkDebugUtilsMessengerCr
 }
 
 enum sf_status sf_instance_create(bool validate, const VkDebugUtilsMessengerCreateInfoEXT *messenger,
-                                  const struct sf_log *log, VkInstance *instance, bool *debug_utils)
+                                  const struct sf_surface_source *surface, const struct sf_log *log,
+                                  VkInstance *instance, bool *debug_utils)
 {
     enum sf_status status;
 
     pthread_mutex_lock(&loader_lock);
-    status = create_locked(validate, messenger, log, instance, debug_utils);
+    status = create_locked(validate, messenger, surface, log, instance, debug_utils);
     pthread_mutex_unlock(&loader_lock);
     return status;
 }
@@ -112,8 +161,8 @@ static const char *kind_name(VkPhysicalDeviceType type)
     }
 }
 
-/* The first family that draws, computes and copies; its queues do all our work. */
-static uint32_t find_family(VkPhysicalDevice physical)
+/* The first family that draws, computes and copies, and shows when there is a surface; its queues do all our work. */
+static uint32_t find_family(VkPhysicalDevice physical, const struct sf_surface *surface)
 {
     enum { FAMILIES_MAX = 32 };
     VkQueueFamilyProperties families[FAMILIES_MAX];
@@ -123,7 +172,7 @@ static uint32_t find_family(VkPhysicalDevice physical)
     for (uint32_t i = 0; i < count; i++) {
         VkQueueFlags wanted = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
 
-        if ((families[i].queueFlags & wanted) == wanted)
+        if ((families[i].queueFlags & wanted) == wanted && (!surface || sf_surface_takes(surface, physical, i)))
             return i;
     }
     return UINT32_MAX;
@@ -159,7 +208,7 @@ static void format_uuid(const uint8_t uuid[VK_UUID_SIZE], char text[37])
     }
 }
 
-uint32_t sf_physical_describe(VkPhysicalDevice physical, struct sf_gpu_info *info)
+uint32_t sf_physical_describe(VkPhysicalDevice physical, const struct sf_surface *surface, struct sf_gpu_info *info)
 {
     VkPhysicalDeviceDriverProperties driver = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
     VkPhysicalDeviceIDProperties id = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ID_PROPERTIES, .pNext = &driver};
@@ -168,7 +217,8 @@ uint32_t sf_physical_describe(VkPhysicalDevice physical, struct sf_gpu_info *inf
     VkPhysicalDeviceProperties2 properties = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2};
     VkPhysicalDeviceMemoryProperties memory;
     const VkPhysicalDeviceProperties *p = &properties.properties;
-    uint32_t family = find_family(physical);
+    bool shows = surface && surface->handle;
+    uint32_t family = find_family(physical, shows ? surface : NULL);
     const char *because = NULL;
 
     *info = (struct sf_gpu_info){0};
@@ -194,8 +244,12 @@ uint32_t sf_physical_describe(VkPhysicalDevice physical, struct sf_gpu_info *inf
     info->max_storage_bytes = p->limits.maxStorageBufferRange;
     if (p->apiVersion < VK_API_VERSION_1_3)
         because = "its driver is older than Vulkan 1.3";
+    else if (family == UINT32_MAX && shows && find_family(physical, NULL) != UINT32_MAX)
+        because = "no queue that draws can show pictures in the window";
     else if (family == UINT32_MAX)
         because = "no queue both draws and computes";
+    else if (shows && !sf_has_extension(physical, VK_KHR_SWAPCHAIN_EXTENSION_NAME))
+        because = "the extension " VK_KHR_SWAPCHAIN_EXTENSION_NAME " is missing";
     else
         because = missing_feature(physical);
     info->suitable = !because;
@@ -237,7 +291,7 @@ enum sf_status sf_gpu_list(const struct sf_log *log, struct sf_gpu_info **infos,
 
     *infos = NULL;
     *count = 0;
-    status = sf_instance_create(false, NULL, log, &instance, &debug_utils);
+    status = sf_instance_create(false, NULL, NULL, log, &instance, &debug_utils);
     if (!status)
         status = sf_physical_list(instance, log, &physicals, count);
     if (!status) {
@@ -246,7 +300,7 @@ enum sf_status sf_gpu_list(const struct sf_log *log, struct sf_gpu_info **infos,
             status = sf_fail(log, SF_ERROR_MEMORY, "no memory for the list of devices");
     }
     for (uint32_t i = 0; !status && i < *count; i++)
-        sf_physical_describe(physicals[i], &(*infos)[i]);
+        sf_physical_describe(physicals[i], NULL, &(*infos)[i]);
     if (status)
         *count = 0;
     free(physicals);
@@ -330,8 +384,8 @@ static enum sf_status choose_wanted(const struct sf_gpu_info *infos, uint32_t co
     return status;
 }
 
-enum sf_status sf_physical_choose(VkInstance instance, const char *wanted, const struct sf_log *log,
-                                  VkPhysicalDevice *physical, struct sf_gpu_info *info)
+enum sf_status sf_physical_choose(VkInstance instance, const char *wanted, const struct sf_surface *surface,
+                                  const struct sf_log *log, VkPhysicalDevice *physical, struct sf_gpu_info *info)
 {
     VkPhysicalDevice *physicals = NULL;
     struct sf_gpu_info *infos = NULL;
@@ -346,7 +400,7 @@ enum sf_status sf_physical_choose(VkInstance instance, const char *wanted, const
         goto done;
     }
     for (uint32_t i = 0; i < count; i++)
-        sf_physical_describe(physicals[i], &infos[i]);
+        sf_physical_describe(physicals[i], surface, &infos[i]);
     if (wanted)
         status = choose_wanted(infos, count, wanted, log, &found);
     else

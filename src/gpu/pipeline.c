@@ -12,26 +12,6 @@
 
 enum { BUILD_THREADS_MAX = 8 };
 
-const struct sf_shader *sf_shader_find(const char *name)
-{
-    size_t low = 0, high = 0;
-
-    while (sf_shaders[high].name)
-        high++;
-    while (low < high) {
-        size_t middle = low + (high - low) / 2;
-        int order = strcmp(name, sf_shaders[middle].name);
-
-        if (order == 0)
-            return &sf_shaders[middle];
-        if (order < 0)
-            high = middle;
-        else
-            low = middle + 1;
-    }
-    return NULL;
-}
-
 static enum sf_status create_layouts(struct sf_pipeline *pipeline)
 {
     struct sf_gpu *gpu = pipeline->gpu;
@@ -73,16 +53,21 @@ static enum sf_status create_layouts(struct sf_pipeline *pipeline)
     return status;
 }
 
-static enum sf_status create_module(struct sf_gpu *gpu, const struct sf_shader *shader, VkShaderModule *module)
+static enum sf_status create_module(const struct sf_pipeline *pipeline, const char *pass,
+                                    const struct sf_shader *shader, VkShaderModule *module)
 {
+    struct sf_gpu *gpu = pipeline->gpu;
+    const struct sf_shader *now = sf_shader_now(gpu, shader);
     VkShaderModuleCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-        .codeSize = shader->bytes,
-        .pCode = shader->words,
+        .codeSize = now->bytes,
+        .pCode = now->words,
     };
-    enum sf_status status = sf_vk_check(gpu, gpu->vk.vkCreateShaderModule(gpu->device, &info, NULL, module),
-                                        "create the shader", shader->name);
+    enum sf_status status = now == shader ? SF_OK : sf_shader_check(gpu, now, pass, &pipeline->key);
 
+    if (!status)
+        status = sf_vk_check(gpu, gpu->vk.vkCreateShaderModule(gpu->device, &info, NULL, module), "create the shader",
+                             shader->name);
     if (!status)
         sf_vk_name(gpu, VK_OBJECT_TYPE_SHADER_MODULE, SF_VK_HANDLE(*module), shader->name);
     return status;
@@ -117,7 +102,7 @@ static VkPipelineColorBlendAttachmentState blend_state(enum sf_blend blend)
 }
 
 static VkResult create_graphics(struct sf_gpu *gpu, const VkPipelineShaderStageCreateInfo *stages, uint32_t stage_count,
-                                struct sf_pipeline *pipeline)
+                                const struct sf_pipeline *pipeline, VkPipeline *handle)
 {
     static const VkDynamicState dynamics[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
     static const VkCullModeFlags culls[] = {
@@ -196,14 +181,14 @@ static VkResult create_graphics(struct sf_gpu *gpu, const VkPipelineShaderStageC
 
     for (uint32_t i = 0; i < key->color_count; i++)
         blends[i] = blend_state(key->raster.blend[i]);
-    return gpu->vk.vkCreateGraphicsPipelines(gpu->device, gpu->cache, 1, &info, NULL, &pipeline->handle);
+    return gpu->vk.vkCreateGraphicsPipelines(gpu->device, gpu->cache, 1, &info, NULL, handle);
 }
 
-static enum sf_status create_handle(struct sf_pipeline *pipeline)
+static enum sf_status create_handle(const struct sf_pipeline *pipeline, VkPipeline *handle)
 {
     struct sf_gpu *gpu = pipeline->gpu;
-    const char *pass = pipeline->pass;
     const struct sf_pipeline_key *key = &pipeline->key;
+    const char *pass = pipeline->pass ? pipeline->pass : key->shader->name;
     bool compute = key->bind_point == VK_PIPELINE_BIND_POINT_COMPUTE;
     VkSpecializationMapEntry entries[SF_PASS_CONSTANTS_MAX];
     VkSpecializationInfo constants = {
@@ -215,10 +200,10 @@ static enum sf_status create_handle(struct sf_pipeline *pipeline)
     VkPipelineShaderStageCreateInfo stages[2] = {0};
     uint32_t stage_count = key->fragment ? 2 : 1;
     VkShaderModule modules[2] = {VK_NULL_HANDLE, VK_NULL_HANDLE};
-    enum sf_status status = create_module(gpu, key->shader, &modules[0]);
+    enum sf_status status = create_module(pipeline, pass, key->shader, &modules[0]);
 
     if (!status && key->fragment)
-        status = create_module(gpu, key->fragment, &modules[1]);
+        status = create_module(pipeline, pass, key->fragment, &modules[1]);
     for (uint32_t i = 0; i < key->constant_count; i++)
         entries[i] = (VkSpecializationMapEntry){i, (uint32_t)(i * sizeof key->constants[0]), sizeof key->constants[0]};
     for (uint32_t i = 0; i < stage_count; i++) {
@@ -237,17 +222,16 @@ static enum sf_status create_handle(struct sf_pipeline *pipeline)
             .layout = pipeline->layout,
         };
 
-        status = sf_vk_check(
-            gpu, gpu->vk.vkCreateComputePipelines(gpu->device, gpu->cache, 1, &info, NULL, &pipeline->handle),
-            "create the compute pipeline of", pass);
+        status = sf_vk_check(gpu, gpu->vk.vkCreateComputePipelines(gpu->device, gpu->cache, 1, &info, NULL, handle),
+                             "create the compute pipeline of", pass);
     } else if (!status) {
-        status = sf_vk_check(gpu, create_graphics(gpu, stages, stage_count, pipeline),
+        status = sf_vk_check(gpu, create_graphics(gpu, stages, stage_count, pipeline, handle),
                              "create the graphics pipeline of", pass);
     }
     for (uint32_t i = 0; i < 2; i++)
         gpu->vk.vkDestroyShaderModule(gpu->device, modules[i], NULL);
     if (!status)
-        sf_vk_name(gpu, VK_OBJECT_TYPE_PIPELINE, SF_VK_HANDLE(pipeline->handle), pass);
+        sf_vk_name(gpu, VK_OBJECT_TYPE_PIPELINE, SF_VK_HANDLE(*handle), pass);
     return status;
 }
 
@@ -293,7 +277,7 @@ static enum sf_status build(void *user)
     struct sf_pipeline *pipeline = user;
     enum sf_status status = create_layouts(pipeline);
 
-    return status ? status : create_handle(pipeline);
+    return status ? status : create_handle(pipeline, &pipeline->handle);
 }
 
 void sf_pipelines_forget(struct sf_gpu *gpu)
@@ -329,6 +313,29 @@ enum sf_status sf_pipelines_build(struct sf_gpu *gpu)
     while (gpu->pipelines_made < gpu->pipeline_count)
         gpu->pipelines[gpu->pipelines_made++]->pass = NULL;
     return SF_OK;
+}
+
+enum sf_status sf_pipelines_remake(struct sf_gpu *gpu, const struct sf_shader *shader)
+{
+    VkPipeline *handles = calloc(gpu->pipelines_made + 1, sizeof *handles);
+    enum sf_status status = SF_OK;
+
+    if (!handles)
+        return sf_fail(gpu->log, SF_ERROR_MEMORY, "no memory for the pipelines of the shader '%s'", shader->name);
+    for (size_t i = 0; i < gpu->pipelines_made && !status; i++)
+        if (gpu->pipelines[i]->key.shader == shader || gpu->pipelines[i]->key.fragment == shader)
+            status = create_handle(gpu->pipelines[i], &handles[i]);
+    for (size_t i = 0; i < gpu->pipelines_made; i++) {
+        VkPipeline unwanted = handles[i];
+
+        if (unwanted && !status) {
+            unwanted = gpu->pipelines[i]->handle;
+            gpu->pipelines[i]->handle = handles[i];
+        }
+        gpu->vk.vkDestroyPipeline(gpu->device, unwanted, NULL);
+    }
+    free(handles);
+    return status;
 }
 
 void sf_pipelines_finish(struct sf_gpu *gpu)

@@ -7,6 +7,34 @@
 
 /* ---- before recording ---- */
 
+/* The barrier in which the play finds the resource; NULL when there is none. */
+static const struct sf_plan_barrier *first_barrier(const struct sf_plan *plan, sf_resource resource)
+{
+    for (uint32_t i = 0; i < plan->pass_count; i++)
+        for (uint32_t j = 0; j < plan->passes[i].barrier_count; j++)
+            if (plan->passes[i].barriers[j].resource == resource)
+                return &plan->passes[i].barriers[j];
+    return NULL;
+}
+
+/* An image of the swapchain is there for one frame, and empty at first. */
+static enum sf_status check_shown(const struct sf_player *player, const struct sf_object *object)
+{
+    const struct sf_gpu_image *image = object->bound_image;
+    const struct sf_plan *plan = player->plan;
+    const struct sf_plan_barrier *barrier = first_barrier(plan, (sf_resource)(object - player->objects) + 1);
+
+    if (image->acquired != atomic_load(&player->gpu->submitted) + 1)
+        return sf_fail(player->gpu->log, SF_ERROR_USAGE,
+                       "'%s' is played on the image '%s', which was not acquired in this frame", plan->name,
+                       image->name);
+    if (!image->drawn && barrier && !barrier->discard)
+        return sf_fail(player->gpu->log, SF_ERROR_USAGE,
+                       "'%s' draws over '%s', which is empty when its frame begins: clear it first", plan->name,
+                       object->resource->name);
+    return SF_OK;
+}
+
 static enum sf_status check_bound(struct sf_player *player, const struct sf_object *object)
 {
     const struct sf_plan_resource *resource = object->resource;
@@ -31,7 +59,7 @@ static enum sf_status check_bound(struct sf_player *player, const struct sf_obje
                            "the image '%s' was not made for what '%s' does with '%s': it rests as %s",
                            object->bound_image->name, plan, resource->name,
                            sf_access_name(object->bound_image->outside));
-        return SF_OK;
+        return object->bound_image->outside == SF_ACCESS_PRESENT ? check_shown(player, object) : SF_OK;
     }
     if (object->bound_buffer->copies[0].bytes < resource->bytes)
         return sf_fail(player->gpu->log, SF_ERROR_USAGE, "'%s' wants %llu bytes of '%s'; the buffer '%s' has %llu",
@@ -430,6 +458,8 @@ static void finish_play(struct sf_player *player, uint64_t serial)
             object->current = 1 - object->current;
         if (object->serials)
             object->serials[player->slice] = serial;
+        if (object->bound_image)
+            object->bound_image->drawn = true;
     }
 }
 

@@ -77,6 +77,8 @@ VkImageSubresourceLayers sf_vk_image_layers(enum sf_format format, uint32_t laye
  * `filtered`: is it? */
 const char *sf_vk_image_misfit(const struct sf_gpu *gpu, enum sf_format format, VkImageUsageFlags usage, bool blended,
                                bool filtered);
+/* A view of all of the image, whose other fields are filled in. */
+enum sf_status sf_vk_image_view_init(struct sf_gpu *gpu, const char *name, struct sf_vk_image *image);
 enum sf_status sf_vk_image_init(struct sf_gpu *gpu, const char *name, const VkImageCreateInfo *info,
                                 enum sf_format format, const struct sf_place *home, uint64_t offset,
                                 struct sf_vk_image *image);
@@ -95,6 +97,9 @@ struct sf_gpu_image {
     char *name;
     struct sf_vk_image image;
     enum sf_access outside;
+    /* A swapchain's: the frame that may draw into it, and whether it has. */
+    uint64_t acquired;
+    bool drawn;
 };
 
 /* ---- barrier.c: the one table access x kind of pass -> stages, accesses, layout ---- */
@@ -107,7 +112,7 @@ struct sf_scope {
 struct sf_scope sf_scope_of(struct sf_touch touch);
 struct sf_scope sf_scope_union(const struct sf_touch *touches, uint32_t count);
 
-/* ---- pipeline.c, cache.c ---- */
+/* ---- pipeline.c ---- */
 
 struct sf_pipeline_binding {
     uint32_t binding;
@@ -141,9 +146,24 @@ enum sf_status sf_pipeline_request(struct sf_gpu *gpu, const char *pass, const s
                                    struct sf_pipeline **pipeline);
 /* Makes what was requested, on several threads. When one fails, none of the new ones remain. */
 enum sf_status sf_pipelines_build(struct sf_gpu *gpu);
+/* Makes the pipelines that use the shader anew, in place, while the device uses none of them. When one fails, all stay
+ * as they are. */
+enum sf_status sf_pipelines_remake(struct sf_gpu *gpu, const struct sf_shader *shader);
 /* Drops what was requested and not made. */
 void sf_pipelines_forget(struct sf_gpu *gpu);
 void sf_pipelines_finish(struct sf_gpu *gpu);
+
+/* ---- shader.c ---- */
+
+/* The words to use for a shader of the library: its own, or those that took their place. */
+const struct sf_shader *sf_shader_now(const struct sf_gpu *gpu, const struct sf_shader *shader);
+/* SF_ERROR_USAGE when the shader's words cannot be used, or not by a pass with a pipeline of that key (NULL: any). */
+enum sf_status sf_shader_check(const struct sf_gpu *gpu, const struct sf_shader *shader, const char *pass,
+                               const struct sf_pipeline_key *key);
+void sf_shaders_finish(struct sf_gpu *gpu);
+
+/* ---- cache.c ---- */
+
 enum sf_status sf_cache_open(struct sf_gpu *gpu);
 void sf_cache_close(struct sf_gpu *gpu);
 
@@ -202,14 +222,54 @@ void sf_gpu_settle(struct sf_gpu *gpu);
 enum sf_status sf_setup_begin(struct sf_gpu *gpu, const char *name, VkCommandBuffer *commands);
 enum sf_status sf_setup_end(struct sf_gpu *gpu, const char *name);
 
+/* ---- surface.c, swapchain.c ---- */
+
+/* The instance's surface calls: volk's globals are those of the instance that was made last, which may have none. */
+struct sf_surface {
+    struct sf_surface_source source; /* create NULL: nothing will be shown */
+    VkSurfaceKHR handle;
+    bool lost; /* to be made anew */
+    uint32_t modes;
+    VkSurfaceFormatKHR format; /* of the swapchain's images */
+    PFN_vkDestroySurfaceKHR destroy;
+    PFN_vkGetPhysicalDeviceSurfaceSupportKHR support;
+    PFN_vkGetPhysicalDeviceSurfaceCapabilitiesKHR capabilities;
+    PFN_vkGetPhysicalDeviceSurfaceFormatsKHR formats;
+    PFN_vkGetPhysicalDeviceSurfacePresentModesKHR present_modes;
+};
+/* Makes the surface, before a device is chosen. Does nothing when gpu->surface has no source. */
+enum sf_status sf_surface_init(struct sf_gpu *gpu);
+/* Can queues of that family show pictures on the surface? */
+bool sf_surface_takes(const struct sf_surface *surface, VkPhysicalDevice physical, uint32_t family);
+/* Asks the chosen device what it can do with the surface: modes, format. */
+enum sf_status sf_surface_learn(struct sf_gpu *gpu);
+/* Another one in place of one that was lost and has no swapchain any more. */
+enum sf_status sf_surface_renew(struct sf_gpu *gpu);
+void sf_surface_finish(struct sf_gpu *gpu);
+VkPresentModeKHR sf_vk_present_mode(enum sf_present_mode mode);
+
+/* What the end of a frame waits for and signals when it draws an image of the swapchain; both none otherwise. Without a
+ * play that drew it, the image becomes black. */
+struct sf_showing {
+    VkSemaphore acquired, drawn;
+};
+struct sf_showing sf_swapchain_close_frame(struct sf_gpu *gpu, VkCommandBuffer commands);
+/* Presents what the frame that has just been submitted drew; nothing to do otherwise. */
+enum sf_status sf_swapchain_present(struct sf_gpu *gpu);
+
 /* ---- instance.c, error.c, device.c ---- */
 
+/* `surface` NULL: none. */
 enum sf_status sf_instance_create(bool validate, const VkDebugUtilsMessengerCreateInfoEXT *messenger,
-                                  const struct sf_log *log, VkInstance *instance, bool *debug_utils);
-/* Fills info (and says what is missing). The queue family that can do all, or UINT32_MAX. */
-uint32_t sf_physical_describe(VkPhysicalDevice physical, struct sf_gpu_info *info);
-enum sf_status sf_physical_choose(VkInstance instance, const char *wanted, const struct sf_log *log,
-                                  VkPhysicalDevice *physical, struct sf_gpu_info *info);
+                                  const struct sf_surface_source *surface, const struct sf_log *log,
+                                  VkInstance *instance, bool *debug_utils);
+/* Of the device, or of instances when there is none. */
+bool sf_has_extension(VkPhysicalDevice physical, const char *name);
+/* Fills info (and says what is missing; showing pictures on the surface counts when there is one, which may be NULL).
+ * The queue family that can do all, or UINT32_MAX. */
+uint32_t sf_physical_describe(VkPhysicalDevice physical, const struct sf_surface *surface, struct sf_gpu_info *info);
+enum sf_status sf_physical_choose(VkInstance instance, const char *wanted, const struct sf_surface *surface,
+                                  const struct sf_log *log, VkPhysicalDevice *physical, struct sf_gpu_info *info);
 enum sf_status sf_physical_list(VkInstance instance, const struct sf_log *log, VkPhysicalDevice **physicals,
                                 uint32_t *count);
 
@@ -233,6 +293,9 @@ struct sf_gpu {
     VkQueue queue;
     uint32_t family;
 
+    struct sf_surface surface;
+    struct sf_swapchain *swapchain; /* the one that was made for the surface, or NULL */
+
     struct sf_gpu_info info;
     struct sf_gpu_tuning tuning;
     VkPhysicalDeviceLimits limits;
@@ -248,7 +311,8 @@ struct sf_gpu {
     uint64_t cache_hash; /* of the data on disk */
     struct sf_pipeline **pipelines;
     size_t pipeline_count, pipeline_capacity;
-    size_t pipelines_made; /* the others were requested */
+    size_t pipelines_made;     /* the others were requested */
+    struct sf_shader *shaders; /* [as sf_shaders] with words where others took the library's place; NULL: nowhere */
 
     struct sf_frame_slot slots[SF_FRAMES_IN_FLIGHT];
     VkSemaphore timeline;       /* holds the serial of the last frame that is done */

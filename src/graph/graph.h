@@ -153,9 +153,10 @@ struct sf_raster {
 };
 
 enum sf_transfer {
-    SF_TRANSFER_COPY, /* uses[0] read -> uses[1] write: buffer to buffer, image to image of equal size, image to buffer
+    SF_TRANSFER_COPY,  /* uses[0] read -> uses[1] write: buffer to buffer, image to image of equal size, image to buffer
                          (tightly packed rows, layers in order) or buffer to image */
-    SF_TRANSFER_FILL, /* uses[0] write, a buffer, filled with the 32-bit word `fill` */
+    SF_TRANSFER_FILL,  /* uses[0] write, a buffer, filled with the 32-bit word `fill` */
+    SF_TRANSFER_FRONT, /* uses[0] read -> uses[1] write, both buffers: as much as the smaller one holds */
 };
 
 struct sf_pass_desc {

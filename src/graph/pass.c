@@ -13,7 +13,7 @@ static uint64_t touched_bytes(const struct sf_graph *graph, const struct sf_pass
 
     if (use->access == SF_ACCESS_INDIRECT)
         return pass->kind == SF_PASS_COMPUTE ? SF_DISPATCH_ARGUMENT_BYTES : SF_DRAW_ARGUMENT_BYTES;
-    if (pass->kind == SF_PASS_TRANSFER && pass->transfer == SF_TRANSFER_COPY) {
+    if (pass->kind == SF_PASS_TRANSFER && pass->transfer != SF_TRANSFER_FILL) {
         other = sf_resource_bytes(graph, pass->uses[use == &pass->uses[0]].resource);
         return other < bytes ? other : bytes;
     }

@@ -127,6 +127,39 @@ static void print_uses(struct sf_text *text, const struct sf_plan *plan, const s
     sf_text_append(text, "]");
 }
 
+/* What an attachment is cleared of, or discards, is not read. */
+static bool reads(const struct sf_use *use)
+{
+    return sf_access_reads(use->access) && !sf_use_overwrites(use);
+}
+
+static bool writes(const struct sf_use *use)
+{
+    return sf_access_writes(use->access);
+}
+
+/* Names of the resources of those uses, each once (a pass may read both copies of a history, or a buffer and the
+ * arguments in it). */
+static void print_names(struct sf_text *text, const char *key, const struct sf_plan *plan,
+                        const struct sf_plan_pass *pass, bool (*wanted)(const struct sf_use *use))
+{
+    uint32_t printed = 0;
+
+    sf_text_printf(text, ",\n     \"%s\": [", key);
+    for (uint32_t i = 0; i < pass->use_count; i++) {
+        const struct sf_use *use = &pass->uses[i].use;
+        uint32_t before = 0;
+
+        while (before < i && (pass->uses[before].use.resource != use->resource || !wanted(&pass->uses[before].use)))
+            before++;
+        if (before < i || !wanted(use))
+            continue;
+        sf_text_append(text, printed++ ? ", " : "");
+        print_string(text, plan->resources[use->resource - 1].name);
+    }
+    sf_text_append(text, "]");
+}
+
 static void print_pass(struct sf_text *text, const struct sf_plan *plan, const struct sf_plan_pass *pass)
 {
     const struct sf_pass_desc *declared = sf_graph_pass_at(plan->graph, pass->index);
@@ -143,6 +176,8 @@ static void print_pass(struct sf_text *text, const struct sf_plan *plan, const s
                        pass->groups[2]);
     print_number(text, "bytes_read", pass->bytes_read);
     print_number(text, "bytes_written", pass->bytes_written);
+    print_names(text, "reads", plan, pass, reads);
+    print_names(text, "writes", plan, pass, writes);
     sf_text_append(text, ",\n     \"barriers\": ");
     print_barriers(text, plan, pass->barriers, pass->barrier_count, "       ");
     sf_text_append(text, ",\n     \"uses\": ");

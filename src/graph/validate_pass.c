@@ -263,6 +263,16 @@ static enum sf_status check_copy(const struct check *check, sf_resource from, sf
     return SF_OK;
 }
 
+static enum sf_status check_front(const struct check *check, sf_resource from, sf_resource to)
+{
+    const struct sf_graph_resource *source = sf_graph_get(check->graph, from), *target = sf_graph_get(check->graph, to);
+
+    if (source->is_image || target->is_image)
+        return fail(check, "copies the front of '%s' to '%s', but only buffers have one; use SF_TRANSFER_COPY",
+                    source->name, target->name);
+    return SF_OK;
+}
+
 static enum sf_status check_transfer(const struct check *check)
 {
     const struct sf_pass_desc *pass = check->pass;
@@ -272,11 +282,13 @@ static enum sf_status check_transfer(const struct check *check)
         pass->instances || pass->draw_live || pass->groups_live || pass->groups[0] || pass->groups[1] ||
         pass->groups[2])
         return fail(check, "is a transfer with a shader, constants to push or a size of work; leave them out");
-    if (pass->transfer == SF_TRANSFER_COPY) {
+    if (pass->transfer == SF_TRANSFER_COPY || pass->transfer == SF_TRANSFER_FRONT) {
         if (pass->use_count != 2 || pass->uses[0].access != SF_ACCESS_TRANSFER_READ ||
             pass->uses[1].access != SF_ACCESS_TRANSFER_WRITE)
             return fail(check, "is a copy; give it two uses, transfer_read and then transfer_write");
-        return check_copy(check, pass->uses[0].resource, pass->uses[1].resource);
+        if (pass->transfer == SF_TRANSFER_COPY)
+            return check_copy(check, pass->uses[0].resource, pass->uses[1].resource);
+        return check_front(check, pass->uses[0].resource, pass->uses[1].resource);
     }
     if (pass->transfer != SF_TRANSFER_FILL)
         return fail(check, "its transfer is none of enum sf_transfer");
