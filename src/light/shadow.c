@@ -1,6 +1,7 @@
 #include "light/shadow.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -437,6 +438,31 @@ enum sf_status sf_shadow_declare(const struct sf_shadow_scene *scene, struct sf_
     return SF_OK;
 }
 
+bool sf_shadow_mesh_same(const struct sf_shadow_scene *a, const struct sf_shadow_scene *b, uint32_t object)
+{
+    uint32_t i = a->scene->objects[a->from[object]].mesh, j = b->scene->objects[b->from[object]].mesh;
+
+    return a->buffers->first_index[i] == b->buffers->first_index[j] &&
+           a->buffers->first_vertex[i] == b->buffers->first_vertex[j] &&
+           a->scene->meshes[i].index_count == b->scene->meshes[j].index_count;
+}
+
+bool sf_shadow_same(const struct sf_shadow_scene *a, const struct sf_shadow_scene *b)
+{
+    uint32_t solids = a->planes + a->solids, count = solids + a->meshes;
+    bool same = a->planes == b->planes && a->solids == b->solids && a->meshes == b->meshes &&
+                a->cells->count == b->cells->count && a->cells->size == b->cells->size &&
+                memcmp(a->cells->cell, b->cells->cell, a->cells->count * sizeof a->cells->cell[0]) == 0 &&
+                memcmp(&a->scene->shadow.softness, &b->scene->shadow.softness, sizeof(float)) == 0;
+
+    /* Of an object its place and shape; colours and bounce do not show. */
+    for (uint32_t i = 0; i < count && same; i++)
+        same = memcmp(&a->objects[i], &b->objects[i], offsetof(struct sf_gpu_object, albedo)) == 0 &&
+               (i < solids || sf_shadow_mesh_same(a, b, i));
+    return same && (a->meshes == 0 ||
+                    (a->buffers->vertices == b->buffers->vertices && a->buffers->indices == b->buffers->indices));
+}
+
 static enum sf_status play(struct sf_gpu *gpu, const struct sf_shadow_scene *scene, const struct sf_graph *graph,
                            struct sf_player *player, struct sf_gpu_image *map)
 {
@@ -471,7 +497,6 @@ enum sf_status sf_shadow_create(struct sf_gpu *gpu, const struct sf_shadow_scene
     struct sf_plan_memory memory = {.needs = sf_gpu_memory_needs, .user = gpu};
     struct sf_shadow_pushes *pushes = calloc(1, sizeof *pushes);
     uint32_t width = scene->cells->size * scene->cells->count, height = scene->cells->size;
-    float *zeros = calloc((size_t)width * height, sizeof *zeros);
     struct sf_graph *graph = NULL;
     struct sf_plan *plan = NULL;
     struct sf_player *player = NULL;
@@ -483,11 +508,12 @@ enum sf_status sf_shadow_create(struct sf_gpu *gpu, const struct sf_shadow_scene
             log, SF_ERROR_SCENE,
             "shadow.map_size %u: the maps of %u lights side by side are wider than the device's limit of %u; lower it",
             scene->cells->size, scene->cells->count, sf_gpu_info(gpu)->max_image_side);
-    else if (!pushes || !zeros)
+    else if (!pushes)
         status = sf_fail(log, SF_ERROR_MEMORY, "shadow.map: out of memory");
     if (!status)
         status =
-            sf_gpu_image_create(gpu, "shadow.map", SF_FORMAT_R32F, width, height, 1, SF_ACCESS_SAMPLED, zeros, map);
+            sf_gpu_image_create_target(gpu, "shadow.map", SF_FORMAT_R32F, width, height,
+                                       1u << SF_ACCESS_SAMPLED | 1u << SF_ACCESS_TRANSFER_READ, SF_ACCESS_SAMPLED, map);
     if (!status)
         status = sf_shadow_declare(scene, pushes, log, &graph);
     if (!status)
@@ -499,7 +525,6 @@ enum sf_status sf_shadow_create(struct sf_gpu *gpu, const struct sf_shadow_scene
     sf_player_destroy(&player);
     sf_plan_destroy(&plan);
     sf_graph_destroy(&graph);
-    free(zeros);
     free(pushes);
     if (status)
         sf_gpu_image_destroy(map);

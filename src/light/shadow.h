@@ -49,6 +49,11 @@ struct sf_shadow_pushes {
 };
 enum sf_status sf_shadow_declare(const struct sf_shadow_scene *scene, struct sf_shadow_pushes *pushes,
                                  const struct sf_log *log, struct sf_graph **graph);
+/* Whether the object of that number, a mesh in both, is the same part of the buffers. */
+bool sf_shadow_mesh_same(const struct sf_shadow_scene *a, const struct sf_shadow_scene *b, uint32_t object);
+/* Whether the map drawn for one is that of the other, bit for bit. Meshes are the same when they are in the same
+ * buffers. */
+bool sf_shadow_same(const struct sf_shadow_scene *a, const struct sf_shadow_scene *b);
 /* Draws it and waits. The image rests in SF_ACCESS_SAMPLED; the caller destroys it. Not for cells->count 0. */
 enum sf_status sf_shadow_create(struct sf_gpu *gpu, const struct sf_shadow_scene *scene, const struct sf_log *log,
                                 struct sf_gpu_image **map);

@@ -1,42 +1,87 @@
 /* The 2 x 2 atlas of density detail (L 3.3.6, METHODS C9), made by fractal value noise. */
-#include <math.h>
 #include <stddef.h>
 
 #include "base/hash.h"
 #include "methods/thick.h"
 
-/* Value noise on the integer lattice, smooth, 0..1. */
-static float noise(uint32_t seed, float x, float y)
+enum {
+    OCTAVES = 4,
+    TILE_MAX = SF_THICK_ATLAS / 2,
+    LATTICE = 64, /* points that a tile may touch along a side: two for each unit of the highest frequency, and some */
+};
+
+/* An octave over a tile, made from random values on the integer lattice, smooth, 0..1. What many texels share (a value,
+ * the place of a row or column) is computed once. */
+struct noise {
+    float amplitude;
+    float value[LATTICE][LATTICE];
+    int point[TILE_MAX];   /* of a texel along either axis: the lattice point before it, counted from the first */
+    float share[TILE_MAX]; /* and the smooth way to the next */
+};
+
+static void noise_fill(uint32_t seed, float frequency, float amplitude, uint32_t tile, struct noise *noise)
 {
-    float fx = floorf(x), fy = floorf(y);
-    float u = x - fx, v = y - fy;
-    u = u * u * (3 - 2 * u);
-    v = v * v * (3 - 2 * v);
-    uint32_t ix = (uint32_t)(int32_t)fx, iy = (uint32_t)(int32_t)fy;
-    float corner[4];
-    for (uint32_t i = 0; i < 4; i++)
-        corner[i] = sf_random_float(seed, ix + (i & 1), iy + (i >> 1));
-    float top = corner[0] + u * (corner[1] - corner[0]), bottom = corner[2] + u * (corner[3] - corner[2]);
-    return top + v * (bottom - top);
+    int first = 0, count = 0;
+
+    noise->amplitude = amplitude;
+    for (uint32_t i = 0; i < tile; i++) {
+        float at = ((float)i + 0.5f) / (float)tile * 2 - 1;
+        at = at * frequency + 64; /* positive */
+        int point = (int)at;
+        float u = at - (float)point;
+        first = i == 0 ? point : first;
+        count = point - first + 2;
+        noise->point[i] = point - first;
+        noise->share[i] = u * u * (3 - 2 * u);
+    }
+    for (int y = 0; y < count; y++)
+        for (int x = 0; x < count; x++)
+            noise->value[y][x] = sf_random_float(seed, (uint32_t)(first + x), (uint32_t)(first + y));
+}
+
+/* The octave's share of a row of texels. */
+static void noise_add(const struct noise *noise, uint32_t row, uint32_t tile, float *sums)
+{
+    const float *upper = noise->value[noise->point[row]], *lower = noise->value[noise->point[row] + 1];
+    float v = noise->share[row];
+
+    for (uint32_t x = 0; x < tile; x++) {
+        int i = noise->point[x];
+        float u = noise->share[x];
+        float top = upper[i] + u * (upper[i + 1] - upper[i]), bottom = lower[i] + u * (lower[i + 1] - lower[i]);
+
+        sums[x] += noise->amplitude * (top + v * (bottom - top));
+    }
+}
+
+static void fill_tile(uint32_t seed, uint32_t tile, uint32_t pitch, unsigned char *texels)
+{
+    struct noise octaves[OCTAVES];
+    float amplitude = 0.5f, frequency = 3;
+
+    for (uint32_t octave = 0; octave < OCTAVES; octave++) {
+        noise_fill(seed + octave, frequency, amplitude, tile, &octaves[octave]);
+        amplitude *= 0.55f;
+        frequency *= 2.1f;
+    }
+    for (uint32_t y = 0; y < tile; y++, texels += pitch) {
+        float sums[TILE_MAX] = {0};
+
+        for (uint32_t octave = 0; octave < OCTAVES; octave++)
+            noise_add(&octaves[octave], y, tile, sums);
+        for (uint32_t x = 0; x < tile; x++) {
+            /* 0.5 (1 - 0.55^4) / (1 - 0.55) is the largest sum; contrast is stretched about the middle. */
+            float value = (sums[x] / 1.0094f - 0.5f) * 2.2f + 0.62f;
+
+            texels[x] = (unsigned char)(255 * (value < 0 ? 0 : value > 1 ? 1 : value) + 0.5f);
+        }
+    }
 }
 
 void sf_thick_atlas(uint32_t seed, uint32_t size, unsigned char *texels)
 {
     uint32_t tile = size / 2;
-    for (uint32_t y = 0; y < size; y++) {
-        for (uint32_t x = 0; x < size; x++) {
-            uint32_t number = (y / tile) * 2 + x / tile;
-            float u = ((float)(x % tile) + 0.5f) / (float)tile * 2 - 1,
-                  v = ((float)(y % tile) + 0.5f) / (float)tile * 2 - 1;
-            float sum = 0, amplitude = 0.5f, frequency = 3;
-            for (uint32_t octave = 0; octave < 4; octave++) {
-                sum += amplitude * noise(seed + 977 * number + octave, u * frequency + 64, v * frequency + 64);
-                amplitude *= 0.55f;
-                frequency *= 2.1f;
-            }
-            /* 0.5 (1 - 0.55^4) / (1 - 0.55) is the largest sum; contrast is stretched about the middle. */
-            float value = (sum / 1.0094f - 0.5f) * 2.2f + 0.62f;
-            texels[(size_t)y * size + x] = (unsigned char)(255 * fminf(fmaxf(value, 0), 1) + 0.5f);
-        }
-    }
+
+    for (uint32_t number = 0; number < 4; number++)
+        fill_tile(seed + 977 * number, tile, size, texels + (size_t)(number / 2 * tile) * size + number % 2 * tile);
 }

@@ -43,6 +43,7 @@ struct sf_method_row {
     enum sf_status (*create_assets)(struct sf_gpu *gpu, const struct sf_scene *scene, const struct sf_log *log,
                                     void **assets);
     void (*destroy_assets)(void **assets);
+    bool (*same_assets)(const struct sf_scene *a, const struct sf_scene *b); /* those of one serve the other */
     void (*bind_assets)(const struct sf_graph *graph, struct sf_player *player, void *assets);
 };
 

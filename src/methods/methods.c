@@ -14,6 +14,7 @@ const struct sf_method_row sf_methods[] = {
             .state_bytes = sizeof(struct sf_thick),
             .create_assets = sf_thick_assets_create,
             .destroy_assets = sf_thick_assets_destroy,
+            .same_assets = sf_thick_assets_same,
             .bind_assets = sf_thick_assets_bind,
         },
 };

@@ -416,6 +416,11 @@ enum sf_status sf_thick_assets_create(struct sf_gpu *gpu, const struct sf_scene 
     return status;
 }
 
+bool sf_thick_assets_same(const struct sf_scene *a, const struct sf_scene *b)
+{
+    return a->sim.seed == b->sim.seed;
+}
+
 void sf_thick_assets_destroy(void **assets)
 {
     if (!assets)

@@ -17,11 +17,12 @@ void sf_thick_update(const struct sf_method_frame *frame, void *state);
 enum sf_status sf_thick_assets_create(struct sf_gpu *gpu, const struct sf_scene *scene, const struct sf_log *log,
                                       void **assets);
 void sf_thick_assets_destroy(void **assets);
+bool sf_thick_assets_same(const struct sf_scene *a, const struct sf_scene *b);
 void sf_thick_assets_bind(const struct sf_graph *graph, struct sf_player *player, void *assets);
 
 /* The 2 x 2 atlas of density detail (L 3.3.6), made of fractal noise that thins out towards each tile's rim.
- * [size][size], 0..255, mean of each tile's disc near 0.6 of its greatest value. `size` is even. The same seed gives
- * the same texels. */
+ * [size][size], 0..255, mean of each tile's disc near 0.6 of its greatest value. `size` is even, at most
+ * SF_THICK_ATLAS. The same seed gives the same texels. */
 void sf_thick_atlas(uint32_t seed, uint32_t size, unsigned char *texels);
 
 #endif

@@ -12,13 +12,8 @@ _Static_assert(sizeof(struct sf_gpu_light_view) == 96, "std140");
 struct parts {
     struct sf_assembly *assembly;
     sf_resource z;
-    uint32_t constants[SF_PASS_CONSTANTS_MAX], constant_count;
+    uint32_t constants[SF_SHADE_CONSTANTS];
 };
-
-bool sf_scene_shows_picture(const struct sf_scene *scene)
-{
-    return scene->environment.visible && scene->environment.pixels;
-}
 
 static sf_resource import_image(struct sf_graph *graph, const char *name, enum sf_format format, uint32_t width,
                                 uint32_t height)
@@ -65,8 +60,8 @@ static void declare_inputs(struct sf_assembly *assembly, const struct sf_assembl
 {
     struct sf_graph *graph = assembly->graph;
     struct sf_method_frame *method = &assembly->method;
-    const struct sf_environment *environment = &assembly->scene->environment;
-    const struct sf_shadow_cells *shadow = &assembly->shadow;
+    const struct sf_scene *scene = assembly->drawn.scene;
+    const struct sf_shadow_cells *shadow = &assembly->drawn.shadow;
 
     method->frame = upload(graph, "frame", sizeof(struct sf_gpu_frame));
     assembly->objects_upload = upload(graph, "objects", sizeof(struct sf_gpu_object) * SF_FRAME_OBJECTS);
@@ -77,39 +72,13 @@ static void declare_inputs(struct sf_assembly *assembly, const struct sf_assembl
             import_image(graph, "shadow.map", SF_FORMAT_R32F, shadow->size * shadow->count, shadow->size);
     else
         method->shadow_map = blank(assembly);
-    if (sf_scene_shows_picture(assembly->scene))
+    if (sf_scene_shows_picture(scene))
         assembly->environment =
-            import_image(graph, "environment", SF_FORMAT_RGBA16F, environment->width, environment->height);
-    if (assembly->list.meshes > 0) {
-        assembly->vertices = import_buffer(graph, "mesh.vertices", assembly->meshes.vertex_bytes, false);
-        assembly->indices = import_buffer(graph, "mesh.indices", assembly->meshes.index_bytes, false);
+            import_image(graph, "environment", SF_FORMAT_RGBA16F, scene->environment.width, scene->environment.height);
+    if (assembly->drawn.list.meshes > 0) {
+        assembly->vertices = import_buffer(graph, "mesh.vertices", assembly->drawn.meshes.vertex_bytes, false);
+        assembly->indices = import_buffer(graph, "mesh.indices", assembly->drawn.meshes.index_bytes, false);
     }
-}
-
-/* As glsl/scene/shade.glsl numbers them. */
-static void find_constants(struct parts *parts)
-{
-    const struct sf_assembly *assembly = parts->assembly;
-    const struct sf_scene *scene = assembly->scene;
-    const struct sf_environment *environment = &scene->environment;
-    uint32_t kinds = 0, casts = 0, checkered = 0;
-
-    for (uint32_t i = 0; i < scene->light_count; i++) {
-        kinds |= (uint32_t)scene->lights[i].kind << 2 * i;
-        casts |= (uint32_t)scene->lights[i].shadows << i;
-    }
-    for (uint32_t i = 0; i < scene->object_count; i++)
-        checkered |= scene->objects[i].kind == SF_OBJECT_PLANE && scene->objects[i].checker > 0;
-    uint32_t shown = !environment->visible                     ? 3
-                     : sf_scene_shows_picture(scene)           ? 2
-                     : environment->kind == SF_ENVIRONMENT_SKY ? 0
-                                                               : 1;
-    bool dims = assembly->method.smoke_map && assembly->method.smoke_shadows;
-    uint32_t level = !environment->pixels; /* sky and colour are the same all around */
-    const uint32_t constants[] = {assembly->list.planes, scene->light_count, kinds, sf_shadow_mask(&assembly->shadow),
-                                  dims ? casts : 0,      checkered,          shown, level};
-    memcpy(parts->constants, constants, sizeof constants);
-    parts->constant_count = sizeof constants / sizeof constants[0];
 }
 
 enum { SHADE_USES = 6 };
@@ -119,7 +88,7 @@ static uint32_t shade_uses(struct parts *parts, struct sf_use uses[SHADE_USES])
 {
     struct sf_assembly *assembly = parts->assembly;
     const struct sf_method_frame *method = &assembly->method;
-    bool smoke = parts->constants[4] != 0;
+    bool smoke = parts->constants[SF_SHADE_CASTS] != 0;
     const struct sf_use all[SHADE_USES - 1] = {
         {.resource = method->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
         {.resource = assembly->objects_upload, .access = SF_ACCESS_UNIFORM, .binding = 1},
@@ -164,11 +133,11 @@ static void declare_sky(struct parts *parts)
                                 .fragment = "scene/sky.frag",
                                 .uses = uses,
                                 .use_count = count,
-                                .constant_count = parts->constant_count,
+                                .constant_count = SF_SHADE_CONSTANTS,
                                 .vertices = 4,
                                 .instances = 1,
                                 .raster = {.triangle_strip = true}};
-    memcpy(pass.constants, parts->constants, sizeof pass.constants);
+    memcpy(pass.constants, parts->constants, sizeof parts->constants);
     sf_graph_pass(assembly->graph, &pass);
 }
 
@@ -184,11 +153,11 @@ static void declare_planes(struct parts *parts)
                                 .fragment = "scene/planes.frag",
                                 .uses = uses,
                                 .use_count = count,
-                                .constant_count = parts->constant_count,
+                                .constant_count = SF_SHADE_CONSTANTS,
                                 .vertices = 4,
-                                .instances = parts->assembly->list.planes,
+                                .instances = parts->assembly->drawn.list.planes,
                                 .raster = {.triangle_strip = true}};
-    memcpy(pass.constants, parts->constants, sizeof pass.constants);
+    memcpy(pass.constants, parts->constants, sizeof parts->constants);
     sf_graph_pass(parts->assembly->graph, &pass);
 }
 
@@ -204,32 +173,32 @@ static void declare_solids(struct parts *parts)
                                 .fragment = "scene/solids.frag",
                                 .uses = uses,
                                 .use_count = count,
-                                .constant_count = parts->constant_count,
+                                .constant_count = SF_SHADE_CONSTANTS,
                                 .vertices = 36,
-                                .instances = parts->assembly->list.solids,
+                                .instances = parts->assembly->drawn.list.solids,
                                 .raster = {.cull = SF_CULL_FRONT, .depth = SF_DEPTH_GREATER_EQUAL}};
-    memcpy(pass.constants, parts->constants, sizeof pass.constants);
+    memcpy(pass.constants, parts->constants, sizeof parts->constants);
     sf_graph_pass(parts->assembly->graph, &pass);
 }
 
 static void declare_mesh(struct parts *parts, uint32_t number)
 {
     struct sf_assembly *assembly = parts->assembly;
-    uint32_t object = assembly->list.planes + assembly->list.solids + number;
-    uint32_t mesh = assembly->scene->objects[assembly->list.from[object]].mesh;
+    uint32_t object = assembly->drawn.list.planes + assembly->drawn.list.solids + number;
+    uint32_t mesh = assembly->drawn.scene->objects[assembly->drawn.list.from[object]].mesh;
     struct sf_mesh_push *push = &assembly->mesh_push[number];
     struct sf_use uses[SHADE_USES + 5];
     uint32_t count = shade_uses(parts, uses);
     char name[32] = "scene.mesh00";
 
     *push = (struct sf_mesh_push){.object = object,
-                                  .first_index = assembly->meshes.first_index[mesh],
-                                  .first_vertex = assembly->meshes.first_vertex[mesh]};
+                                  .first_index = assembly->drawn.meshes.first_index[mesh],
+                                  .first_vertex = assembly->drawn.meshes.first_vertex[mesh]};
     name[10] = (char)('0' + number / 10);
     name[11] = (char)('0' + number % 10);
     uses[count++] = (struct sf_use){.resource = assembly->vertices, .access = SF_ACCESS_STORAGE_READ, .binding = 5};
     uses[count++] = (struct sf_use){.resource = assembly->indices, .access = SF_ACCESS_STORAGE_READ, .binding = 6};
-    bool first = number == 0 && assembly->list.solids == 0;
+    bool first = number == 0 && assembly->drawn.list.solids == 0;
     count += target_uses(parts, SF_LOAD_KEEP, true, first ? SF_LOAD_CLEAR : SF_LOAD_KEEP, &uses[count]);
     struct sf_pass_desc pass = {.name = name,
                                 .kind = SF_PASS_RASTER,
@@ -237,32 +206,35 @@ static void declare_mesh(struct parts *parts, uint32_t number)
                                 .fragment = "scene/mesh.frag",
                                 .uses = uses,
                                 .use_count = count,
-                                .constant_count = parts->constant_count,
+                                .constant_count = SF_SHADE_CONSTANTS,
                                 .push = push,
                                 .push_bytes = sizeof *push,
-                                .vertices = assembly->scene->meshes[mesh].index_count,
+                                .vertices = assembly->drawn.scene->meshes[mesh].index_count,
                                 .instances = 1,
                                 .raster = {.depth = SF_DEPTH_GREATER_EQUAL}};
-    memcpy(pass.constants, parts->constants, sizeof pass.constants);
+    memcpy(pass.constants, parts->constants, sizeof parts->constants);
     sf_graph_pass(assembly->graph, &pass);
 }
 
-static void declare_scene(struct sf_assembly *assembly)
+static void declare_scene(struct sf_assembly *assembly, bool shown)
 {
     struct parts parts = {.assembly = assembly};
+    enum sf_format format = assembly->float_color ? SF_FORMAT_RGBA32F : SF_FORMAT_RGBA16F;
 
-    assembly->method.color =
-        frame_image(assembly, "color", assembly->float_color ? SF_FORMAT_RGBA32F : SF_FORMAT_RGBA16F);
+    assembly->method.color = shown ? import_image(assembly->graph, "color", format, assembly->width, assembly->height)
+                                   : frame_image(assembly, "color", format);
     assembly->method.depth = frame_image(assembly, "depth", SF_FORMAT_R32F);
-    find_constants(&parts);
+    memcpy(parts.constants, assembly->drawn.constants, sizeof parts.constants);
+    if (!assembly->method.smoke_map || !assembly->method.smoke_shadows)
+        parts.constants[SF_SHADE_CASTS] = 0;
     declare_sky(&parts);
-    if (assembly->list.planes > 0)
+    if (assembly->drawn.list.planes > 0)
         declare_planes(&parts);
-    if (assembly->list.solids + assembly->list.meshes > 0)
+    if (assembly->drawn.list.solids + assembly->drawn.list.meshes > 0)
         parts.z = frame_image(assembly, "z", SF_FORMAT_D32F);
-    if (assembly->list.solids > 0)
+    if (assembly->drawn.list.solids > 0)
         declare_solids(&parts);
-    for (uint32_t i = 0; i < assembly->list.meshes; i++)
+    for (uint32_t i = 0; i < assembly->drawn.list.meshes; i++)
         declare_mesh(&parts, i);
 }
 
@@ -285,17 +257,22 @@ static void declare_outputs(struct sf_assembly *assembly, const struct sf_assemb
 {
     const struct sf_method_frame *method = &assembly->method;
     uint64_t pixels = (uint64_t)assembly->width * assembly->height;
+    bool returned = !options->shown || options->returned;
 
     if (options->no_readback) {
         sf_graph_output(assembly->graph, method->color);
         sf_graph_output(assembly->graph, method->depth);
         return;
     }
-    assembly->read_color = declare_readback(assembly, "read.color", "output.color", method->color,
-                                            pixels * (assembly->float_color ? 16 : 8));
-    assembly->read_depth = declare_readback(assembly, "read.depth", "output.depth", method->depth, pixels * 4);
+    if (returned) {
+        assembly->read_color = declare_readback(assembly, "read.color", "output.color", method->color,
+                                                pixels * (assembly->float_color ? 16 : 8));
+        assembly->read_depth = declare_readback(assembly, "read.depth", "output.depth", method->depth, pixels * 4);
+    }
     assembly->read_counts =
         declare_readback(assembly, "read.counts", "output.counts", method->counts, sizeof(struct sf_particle_counts));
+    if (!returned)
+        return;
     if (options->aovs & SF_AOV_SMOKE && method->aov_radiance)
         assembly->read_smoke =
             declare_readback(assembly, "read.smoke", "output.smoke", method->aov_radiance, pixels * 8);
@@ -304,26 +281,10 @@ static void declare_outputs(struct sf_assembly *assembly, const struct sf_assemb
             declare_readback(assembly, "read.smoke_depths", "output.smoke_depths", method->aov_depths, pixels * 16);
 }
 
-/* Where each mesh will stand in the buffers that all of them share. */
-static void place_meshes(struct sf_assembly *assembly)
-{
-    struct sf_mesh_buffers *buffers = &assembly->meshes;
-    uint32_t vertices = 0, indices = 0;
-
-    for (uint32_t i = 0; i < assembly->scene->mesh_count; i++) {
-        buffers->first_vertex[i] = vertices;
-        buffers->first_index[i] = indices;
-        vertices += assembly->scene->meshes[i].vertex_count;
-        indices += assembly->scene->meshes[i].index_count;
-    }
-    buffers->vertex_bytes = (uint64_t)vertices * 6 * sizeof(float);
-    buffers->index_bytes = (uint64_t)indices * sizeof(uint32_t);
-}
-
 static enum sf_status declare(struct sf_assembly *assembly, const struct sf_assembly_options *options,
                               const struct sf_log *log)
 {
-    const struct sf_method_row *row = &sf_methods[assembly->scene->method];
+    const struct sf_method_row *row = &sf_methods[assembly->drawn.scene->method];
     enum sf_status status = sf_graph_create("frame", log, &assembly->graph);
 
     if (status)
@@ -335,7 +296,7 @@ static enum sf_status declare(struct sf_assembly *assembly, const struct sf_asse
         status = row->light(&assembly->method, assembly->state, log);
     if (status)
         return status;
-    declare_scene(assembly);
+    declare_scene(assembly, options->shown);
     if (row->view)
         status = row->view(&assembly->method, assembly->state, log);
     if (!status)
@@ -361,7 +322,6 @@ enum sf_status sf_assembly_create(const struct sf_scene *scene, const struct sf_
         return sf_fail(log, SF_ERROR_MEMORY, "the frame's graph: out of memory");
     }
     assembly->state = state;
-    assembly->scene = scene;
     assembly->width = options->width;
     assembly->height = options->height;
     assembly->float_color = options->float_color;
@@ -370,11 +330,7 @@ enum sf_status sf_assembly_create(const struct sf_scene *scene, const struct sf_
                                                 .width = options->width,
                                                 .height = options->height,
                                                 .want_aovs = options->aovs != 0};
-    sf_object_list_fill(scene, &assembly->list);
-    for (uint32_t i = 0; i < scene->object_count; i++)
-        sf_object_fill(&scene->objects[assembly->list.from[i]], &assembly->objects[i]);
-    sf_shadow_fit(scene, &assembly->shadow);
-    place_meshes(assembly);
+    sf_drawn_fill(scene, &assembly->drawn);
     status = declare(assembly, options, log);
     if (!status)
         status = sf_plan_create(assembly->graph, memory, log, &assembly->plan);
@@ -395,14 +351,8 @@ void sf_assembly_destroy(struct sf_assembly **assembly)
     *assembly = NULL;
 }
 
-struct sf_shadow_scene sf_assembly_shadow(const struct sf_assembly *assembly)
+void sf_assembly_set_scene(struct sf_assembly *assembly, const struct sf_drawn *drawn)
 {
-    return (struct sf_shadow_scene){.scene = assembly->scene,
-                                    .cells = &assembly->shadow,
-                                    .objects = assembly->objects,
-                                    .from = assembly->list.from,
-                                    .planes = assembly->list.planes,
-                                    .solids = assembly->list.solids,
-                                    .meshes = assembly->list.meshes,
-                                    .buffers = &assembly->meshes};
+    assembly->drawn = *drawn;
+    assembly->method.scene = drawn->scene;
 }

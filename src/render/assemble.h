@@ -2,19 +2,14 @@
 #ifndef SF_RENDER_ASSEMBLE_H
 #define SF_RENDER_ASSEMBLE_H
 
-#include "light/shadow.h"
 #include "methods/method.h"
+#include "render/drawn.h"
 #include "render/inspect.h"
-#include "render/uniforms.h"
 
 struct sf_assembly {
-    const struct sf_scene *scene;
     uint32_t width, height;
     bool float_color;
-    struct sf_object_list list;
-    struct sf_gpu_object objects[SF_FRAME_OBJECTS]; /* in the list's order */
-    struct sf_shadow_cells shadow;
-    struct sf_mesh_buffers meshes;
+    struct sf_drawn drawn;
     struct sf_mesh_push mesh_push[SF_OBJECTS_MAX];
     struct sf_graph *graph;
     struct sf_plan *plan;
@@ -31,18 +26,19 @@ struct sf_assembly {
 struct sf_assembly_options {
     uint32_t width, height;
     bool float_color, no_readback;
+    bool shown;    /* the picture is drawn into an imported image that rests in SF_ACCESS_SAMPLED; only counts and
+                      `inspect` come back, unless: */
+    bool returned; /* all comes back as well */
     uint32_t aovs;
     uint32_t capacity;   /* particles in the list */
-    const char *inspect; /* an image of the graph that comes back as well, or NULL */
+    const char *inspect; /* an image or buffer of the graph that comes back as well, or NULL */
 };
 /* Declares and compiles. The scene must outlive it; `memory` may be NULL. */
 enum sf_status sf_assembly_create(const struct sf_scene *scene, const struct sf_assembly_options *options,
                                   const struct sf_gpu_tuning *tuning, const struct sf_plan_memory *memory,
                                   const struct sf_log *log, struct sf_assembly **assembly);
 void sf_assembly_destroy(struct sf_assembly **assembly);
-/* What the shadow map's graph needs of it; points into the assembly. */
-struct sf_shadow_scene sf_assembly_shadow(const struct sf_assembly *assembly);
-/* The scene's background shows its environment picture. */
-bool sf_scene_shows_picture(const struct sf_scene *scene);
+/* Points it at another scene, for which its graph serves as it is (sf_drawn_alike). */
+void sf_assembly_set_scene(struct sf_assembly *assembly, const struct sf_drawn *drawn);
 
 #endif

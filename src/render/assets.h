@@ -10,10 +10,21 @@ struct sf_assets {
     const struct sf_method_row *row;
     void *method;
 };
-/* Uploads what the assembly imports, and draws the shadow map. `assets` holds zeros before; finish it also after a failure. */
-enum sf_status sf_assets_init(struct sf_gpu *gpu, const struct sf_assembly *assembly, const struct sf_log *log,
-                              struct sf_assets *assets);
-void sf_assets_bind(struct sf_assets *assets, const struct sf_assembly *assembly, struct sf_player *player);
+
+/* What a renderer has already: the scene that it was made for, and whether files of the two scenes may differ. */
+struct sf_assets_before {
+    const struct sf_assets *assets;
+    const struct sf_drawn *drawn;
+    bool files;
+};
+/* Uploads what the scene's graph imports, and draws the shadow map. `assets` holds zeros before; finish it also after a
+ * failure. With `before` (may be NULL) it takes part in what would come out the same: then only one of the two may be
+ * finished, and the other be left by sf_assets_leave. */
+enum sf_status sf_assets_init(struct sf_gpu *gpu, const struct sf_drawn *drawn, const struct sf_assets_before *before,
+                              const struct sf_log *log, struct sf_assets *assets);
+void sf_assets_bind(const struct sf_assets *assets, const struct sf_assembly *assembly, struct sf_player *player);
+/* Destroys what `assets` does not have in common with `others`. */
+void sf_assets_leave(struct sf_assets *assets, const struct sf_assets *others);
 void sf_assets_finish(struct sf_assets *assets);
 
 #endif

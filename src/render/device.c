@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/log.h"
+#include "gpu/shaders.h"
 
 static void describe(const struct sf_gpu_info *from, struct sf_device_info *to)
 {
@@ -58,7 +59,8 @@ enum sf_status sf_device_create(const struct sf_device_options *options, const s
                                                .validate = options->validate,
                                                .budget_bytes = options->budget_bytes,
                                                .timeout_ns = options->timeout_ns,
-                                               .no_cache = options->no_cache};
+                                               .no_cache = options->no_cache,
+                                               .surface = options->surface};
     enum sf_status status;
 
     *device = calloc(1, sizeof **device);
@@ -92,4 +94,18 @@ uint32_t sf_device_validation_messages(const struct sf_device *device)
 void sf_device_memory(const struct sf_device *device, uint64_t *used, uint64_t *budget)
 {
     sf_gpu_memory(device->gpu, used, budget);
+}
+
+const char *sf_shader_name(uint32_t index)
+{
+    uint32_t i = 0;
+
+    while (i < index && sf_shaders[i].name)
+        i++;
+    return sf_shaders[i].name;
+}
+
+enum sf_status sf_device_set_shader(struct sf_device *device, const char *name, const uint32_t *words, size_t bytes)
+{
+    return sf_gpu_set_shader(device->gpu, name, words, bytes);
 }

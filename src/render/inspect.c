@@ -35,6 +35,17 @@ static uint32_t channels_of(enum sf_format format)
     }
 }
 
+/* Readbacks are the CPU's already. */
+static const char *name_of(const struct sf_graph *graph, sf_resource resource)
+{
+    const struct sf_image_desc *image = sf_graph_image_at(graph, resource);
+    const struct sf_buffer_desc *buffer = sf_graph_buffer_at(graph, resource);
+
+    if (image)
+        return image->name;
+    return buffer && buffer->lifetime != SF_READBACK ? buffer->name : NULL;
+}
+
 static enum sf_status unknown(const struct sf_graph *graph, const char *name, const struct sf_log *log)
 {
     const char *names[NAMES_MAX], *near;
@@ -43,14 +54,14 @@ static enum sf_status unknown(const struct sf_graph *graph, const char *name, co
     enum sf_status status;
 
     for (sf_resource r = 1; r <= sf_graph_resource_count(graph) && count < NAMES_MAX; r++) {
-        const struct sf_image_desc *image = sf_graph_image_at(graph, r);
-        if (!image)
+        if (!name_of(graph, r))
             continue;
-        sf_text_printf(&text, "%s%s", count > 0 ? ", " : "", image->name);
-        names[count++] = image->name;
+        names[count] = name_of(graph, r);
+        sf_text_printf(&text, "%s%s", count > 0 ? ", " : "", names[count]);
+        count++;
     }
     near = sf_suggest(name, names, count);
-    status = sf_fail(log, SF_ERROR_USAGE, "the frame's graph has no image '%s'%s%s%s; there are %s", name,
+    status = sf_fail(log, SF_ERROR_USAGE, "the frame's graph has no image or buffer '%s'%s%s%s; there are %s", name,
                      near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "",
                      text.data && !text.failed ? text.data : "others");
     sf_text_finish(&text);
@@ -78,29 +89,45 @@ static void extent(const struct sf_graph *graph, const struct sf_image_desc *ima
     *height = scaled(*height, &image->size);
 }
 
+/* Its bytes; how it will be looked at goes into `inspected`. */
+static uint64_t describe(const struct sf_graph *graph, sf_resource resource, struct sf_inspected *inspected)
+{
+    const struct sf_image_desc *image = sf_graph_image_at(graph, resource);
+    uint64_t bytes;
+
+    if (!image) {
+        bytes = sf_graph_buffer_at(graph, resource)->bytes;
+        bytes = bytes < SF_INSPECTED_BYTES_MAX ? bytes : SF_INSPECTED_BYTES_MAX;
+        inspected->words = (uint32_t)(bytes / sizeof(uint32_t));
+        return bytes;
+    }
+    inspected->format = image->format;
+    inspected->channels = channels_of(image->format);
+    extent(graph, image, &inspected->width, &inspected->height);
+    bytes = (uint64_t)inspected->width * inspected->height * image->layers * sf_format_bytes(image->format);
+    inspected->height *= image->layers;
+    return bytes;
+}
+
 enum sf_status sf_inspect_declare(struct sf_graph *graph, const char *name, const struct sf_log *log,
                                   struct sf_inspected *inspected)
 {
     sf_resource from = sf_graph_find(graph, name);
-    const struct sf_image_desc *image = sf_graph_image_at(graph, from);
+    struct sf_buffer_desc readback = {.name = "read.inspected", .lifetime = SF_READBACK};
 
     *inspected = (struct sf_inspected){0};
-    if (!image)
+    if (!from || !name_of(graph, from))
         return unknown(graph, name, log);
-    inspected->format = image->format;
-    inspected->channels = channels_of(image->format);
-    extent(graph, image, &inspected->width, &inspected->height);
-    uint64_t bytes = (uint64_t)inspected->width * inspected->height * image->layers * sf_format_bytes(image->format);
-    inspected->height *= image->layers;
-    inspected->readback = sf_graph_buffer(
-        graph, &(struct sf_buffer_desc){.name = "read.inspected", .lifetime = SF_READBACK, .bytes = bytes});
+    readback.bytes = describe(graph, from, inspected);
+    inspected->readback = sf_graph_buffer(graph, &readback);
     const struct sf_use uses[] = {{.resource = from, .access = SF_ACCESS_TRANSFER_READ},
                                   {.resource = inspected->readback, .access = SF_ACCESS_TRANSFER_WRITE}};
-    sf_graph_pass(graph, &(struct sf_pass_desc){.name = "output.inspected",
-                                                .kind = SF_PASS_TRANSFER,
-                                                .uses = uses,
-                                                .use_count = 2,
-                                                .transfer = SF_TRANSFER_COPY});
+    sf_graph_pass(graph,
+                  &(struct sf_pass_desc){.name = "output.inspected",
+                                         .kind = SF_PASS_TRANSFER,
+                                         .uses = uses,
+                                         .use_count = 2,
+                                         .transfer = inspected->words > 0 ? SF_TRANSFER_FRONT : SF_TRANSFER_COPY});
     return SF_OK;
 }
 

@@ -10,4 +10,9 @@ struct sf_device {
     struct sf_gpu *gpu;
 };
 
+/* The picture that stays on the device (sf_renderer_options.shown), RGBA32F when *float_color, else RGBA16F, of
+ * *width x *height px: rests in SF_ACCESS_SAMPLED, the renderer's. NULL before the first picture. */
+struct sf_gpu_image *sf_renderer_shown(const struct sf_renderer *renderer, uint32_t *width, uint32_t *height,
+                                       bool *float_color);
+
 #endif

@@ -2,150 +2,15 @@
  *
  * Frame n is at time n/fps, and the simulation takes whole fixed steps: preroll fps substeps + n substeps of them before frame n. So a frame has the
  * same bits however one comes to it. A frame's last steps and its picture are one submit; longer ways go ahead in batches. */
-#include "render/internal.h"
+#include "render/renderer.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include "base/log.h"
-#include "render/assemble.h"
-#include "render/assets.h"
 #include "shared/particle.h"
-#include "sim/particles.h"
 
-enum { BATCH = 16, FRAMES_KEPT_MAX = 8, TICKETS = 16 };
-
-/* A frame that was queued. */
-struct queued {
-    uint64_t ticket, serial;
-    uint32_t number;
-    double time;
-    bool stepped; /* simulation steps went with it */
-    float world_to_camera[16], world_to_clip[16];
-};
-
-struct sf_renderer {
-    struct sf_device *device;
-    const struct sf_scene *scene;
-    const struct sf_log *log;
-    struct sf_renderer_options options;
-    struct sf_particles *particles;
-    struct sf_assembly *assembly;
-    struct sf_assets assets;
-    struct sf_player *player;
-    struct queued queued[TICKETS];     /* by ticket */
-    uint64_t tickets;                  /* given so far */
-    float *inspected[FRAMES_KEPT_MAX]; /* by ticket; NULL until the first is asked for */
-    uint64_t inspected_ticket[FRAMES_KEPT_MAX];
-    struct sf_pass_timing *timings;
-    uint64_t record_ns;
-    uint32_t recorded; /* passes */
-};
-
-/* ---- making ---- */
-
-static enum sf_status check_options(const struct sf_device *device, const struct sf_renderer_options *options,
-                                    const struct sf_log *log)
-{
-    uint32_t limit = sf_gpu_info(device->gpu)->max_image_side;
-
-    if (options->width == 0 || options->height == 0)
-        return sf_fail(log, SF_ERROR_USAGE, "a frame of %ux%u has no pixels; width and height are at least 1",
-                       options->width, options->height);
-    if (options->width > limit || options->height > limit)
-        return sf_fail(log, SF_ERROR_USAGE, "a frame of %ux%u is too large: '%s' takes at most %u along a side",
-                       options->width, options->height, sf_gpu_info(device->gpu)->name, limit);
-    if (options->frames_kept > FRAMES_KEPT_MAX)
-        return sf_fail(log, SF_ERROR_USAGE, "frames_kept is %u; it can be 1 to %d, or 0 for 2", options->frames_kept,
-                       FRAMES_KEPT_MAX);
-    if (options->inspect && options->no_readback)
-        return sf_fail(log, SF_ERROR_USAGE, "inspecting '%s' needs what no_readback leaves out", options->inspect);
-    return SF_OK;
-}
-
-static enum sf_status create_parts(struct sf_renderer *renderer)
-{
-    struct sf_gpu *gpu = renderer->device->gpu;
-    const struct sf_plan_memory memory = {.needs = sf_gpu_memory_needs, .user = gpu};
-    enum sf_status status = sf_particles_create(gpu, renderer->scene, renderer->log, &renderer->particles);
-
-    if (status)
-        return status;
-    const struct sf_assembly_options options = {.width = renderer->options.width,
-                                                .height = renderer->options.height,
-                                                .float_color = renderer->options.float_color,
-                                                .no_readback = renderer->options.no_readback,
-                                                .aovs = renderer->options.aovs,
-                                                .inspect = renderer->options.inspect,
-                                                .capacity = sf_particles_capacity(renderer->particles)};
-    status =
-        sf_assembly_create(renderer->scene, &options, sf_gpu_tuning(gpu), &memory, renderer->log, &renderer->assembly);
-    if (!status)
-        status = sf_assets_init(gpu, renderer->assembly, renderer->log, &renderer->assets);
-    if (!status)
-        status = sf_player_create(gpu, renderer->assembly->plan, &renderer->player);
-    if (status)
-        return status;
-    sf_assets_bind(&renderer->assets, renderer->assembly, renderer->player);
-    sf_player_bind_buffer(renderer->player, renderer->assembly->method.particles,
-                          sf_particles_list(renderer->particles));
-    sf_player_bind_buffer(renderer->player, renderer->assembly->method.counts,
-                          sf_particles_counts(renderer->particles));
-    sf_player_set_readback_depth(renderer->player, renderer->options.frames_kept);
-    if (renderer->options.timing) {
-        sf_player_set_timing(renderer->player, true);
-        sf_player_set_timing(sf_particles_player(renderer->particles), true);
-        sf_player_set_readback_depth(sf_particles_player(renderer->particles), renderer->options.frames_kept);
-    }
-    renderer->timings =
-        calloc(sf_particles_plan(renderer->particles)->pass_count + renderer->assembly->plan->pass_count,
-               sizeof *renderer->timings);
-    return renderer->timings ? SF_OK : sf_fail(renderer->log, SF_ERROR_MEMORY, "renderer: out of memory");
-}
-
-enum sf_status sf_renderer_create(struct sf_device *device, const struct sf_scene *scene,
-                                  const struct sf_renderer_options *options, const struct sf_log *log,
-                                  struct sf_renderer **out)
-{
-    struct sf_renderer *renderer;
-    enum sf_status status = check_options(device, options, log);
-
-    *out = NULL;
-    if (status)
-        return status;
-    renderer = calloc(1, sizeof *renderer);
-    if (!renderer)
-        return sf_fail(log, SF_ERROR_MEMORY, "renderer: out of memory");
-    renderer->device = device;
-    renderer->scene = scene;
-    renderer->log = log;
-    renderer->options = *options;
-    if (options->frames_kept == 0)
-        renderer->options.frames_kept = 2;
-    status = create_parts(renderer);
-    renderer->options.inspect = NULL; /* the caller's, who may free it now */
-    if (status)
-        sf_renderer_destroy(&renderer);
-    *out = renderer;
-    return status;
-}
-
-void sf_renderer_destroy(struct sf_renderer **out)
-{
-    struct sf_renderer *renderer = out ? *out : NULL;
-
-    if (!renderer)
-        return;
-    sf_player_destroy(&renderer->player);
-    sf_assets_finish(&renderer->assets);
-    sf_assembly_destroy(&renderer->assembly);
-    sf_particles_destroy(&renderer->particles);
-    for (int i = 0; i < FRAMES_KEPT_MAX; i++)
-        free(renderer->inspected[i]);
-    free(renderer->timings);
-    free(renderer);
-    *out = NULL;
-}
+enum { BATCH = 16 };
 
 /* ---- time ---- */
 
@@ -173,6 +38,14 @@ static enum sf_status record_steps(struct sf_renderer *renderer, uint64_t count)
     return status;
 }
 
+/* The host wanted it so, and knows: no error. */
+static enum sf_status stopped(const struct sf_renderer *renderer, uint64_t step, uint64_t target)
+{
+    sf_log(renderer->log, SF_LOG_INFO, "the simulation was stopped at step %llu of %llu", (unsigned long long)step,
+           (unsigned long long)target);
+    return SF_ERROR_INTERRUPTED;
+}
+
 /* Steps to `target` in batches, each its own submit. */
 static enum sf_status advance(struct sf_renderer *renderer, uint64_t target, sf_progress_fn progress, void *user)
 {
@@ -187,8 +60,7 @@ static enum sf_status advance(struct sf_renderer *renderer, uint64_t target, sf_
     for (now = start; now < target && !status; now = sf_particles_steps(renderer->particles)) {
         uint64_t count = target - now < BATCH ? target - now : BATCH;
         if (progress && !progress(user, now - start, target - start))
-            return sf_fail(renderer->log, SF_ERROR_INTERRUPTED, "the simulation was stopped at step %llu of %llu",
-                           (unsigned long long)now, (unsigned long long)target);
+            return stopped(renderer, now, target);
         status = sf_frame_begin(gpu);
         if (status)
             return status;
@@ -197,7 +69,7 @@ static enum sf_status advance(struct sf_renderer *renderer, uint64_t target, sf_
         status = status ? status : ended;
     }
     if (progress && !status && target > start && !progress(user, target - start, target - start))
-        return sf_fail(renderer->log, SF_ERROR_INTERRUPTED, "the simulation was stopped");
+        return stopped(renderer, target, target);
     return status;
 }
 
@@ -221,10 +93,10 @@ enum sf_status sf_renderer_seek(struct sf_renderer *renderer, uint32_t frame, sf
 
 /* ---- frames ---- */
 
-static enum sf_status record_picture(struct sf_renderer *renderer, struct queued *queued)
+static enum sf_status record_picture(struct sf_renderer *renderer, struct sf_queued *queued)
 {
-    struct sf_assembly *assembly = renderer->assembly;
-    struct sf_player *player = renderer->player;
+    struct sf_assembly *assembly = renderer->stage.assembly;
+    struct sf_player *player = renderer->stage.player;
     const struct sf_method_row *row = renderer->assets.row;
     struct sf_gpu_frame *frame = sf_player_upload(player, assembly->method.frame);
     void *objects = sf_player_upload(player, assembly->objects_upload);
@@ -234,9 +106,11 @@ static enum sf_status record_picture(struct sf_renderer *renderer, struct queued
     if (!frame || !objects)
         return sf_fail(renderer->log, SF_ERROR_MEMORY, "frame %u: no memory for its uploads", queued->number);
     sf_uniforms_fill(renderer->scene, assembly->width, assembly->height, queued->number, queued->time, &filled);
-    sf_shadow_fill(&assembly->shadow, &filled);
+    if (renderer->posed)
+        sf_uniforms_view(&renderer->pose, assembly->width, assembly->height, &filled);
+    sf_shadow_fill(&assembly->drawn.shadow, &filled);
     memcpy(frame, &filled, sizeof filled); /* once: upload memory is slow to read, and writes may be combined */
-    memcpy(objects, assembly->objects, sizeof assembly->objects);
+    memcpy(objects, assembly->drawn.objects, sizeof assembly->drawn.objects);
     sf_matrix_transpose(filled.world_to_view, queued->world_to_camera);
     sf_matrix_transpose(filled.world_to_clip, queued->world_to_clip);
     if (row->update)
@@ -250,7 +124,7 @@ static enum sf_status record_picture(struct sf_renderer *renderer, struct queued
 enum sf_status sf_renderer_render(struct sf_renderer *renderer, uint32_t frame, uint64_t *ticket)
 {
     struct sf_gpu *gpu = renderer->device->gpu;
-    struct queued queued = {.number = frame, .time = (double)frame / renderer->scene->sim.fps};
+    struct sf_queued queued = {.number = frame, .time = (double)frame / renderer->scene->sim.fps};
     uint64_t target = steps_at(renderer->scene, frame);
     enum sf_status status = sf_renderer_seek(renderer, frame, NULL, NULL);
 
@@ -270,27 +144,33 @@ enum sf_status sf_renderer_render(struct sf_renderer *renderer, uint32_t frame, 
     status = status ? status : ended;
     if (status)
         return status;
+    renderer->stage.drawn = true;
     queued.ticket = ++renderer->tickets;
-    renderer->queued[queued.ticket % TICKETS] = queued;
+    renderer->queued[queued.ticket % SF_TICKETS] = queued;
     *ticket = queued.ticket;
     return SF_OK;
 }
 
 /* NULL, with a message, when its results are gone or it never was. */
-static const struct queued *find(const struct sf_renderer *renderer, uint64_t ticket)
+static const struct sf_queued *find(const struct sf_renderer *renderer, uint64_t ticket)
 {
     bool kept = ticket > 0 && ticket <= renderer->tickets && renderer->tickets - ticket < renderer->options.frames_kept;
 
-    if (!kept)
+    if (kept && ticket > renderer->void_tickets)
+        return &renderer->queued[ticket % SF_TICKETS];
+    if (kept)
+        sf_fail(renderer->log, SF_ERROR_USAGE, "ticket %llu: the renderer's graph was made anew since",
+                (unsigned long long)ticket);
+    else
         sf_fail(renderer->log, SF_ERROR_USAGE, "ticket %llu: the last frame queued has %llu, and %u are kept",
                 (unsigned long long)ticket, (unsigned long long)renderer->tickets, renderer->options.frames_kept);
-    return kept ? &renderer->queued[ticket % TICKETS] : NULL;
+    return NULL;
 }
 
 static const void *read_back(struct sf_renderer *renderer, sf_resource resource, uint64_t serial,
                              enum sf_status *status)
 {
-    const void *data = resource ? sf_player_readback(renderer->player, resource, serial) : NULL;
+    const void *data = resource ? sf_player_readback(renderer->stage.player, resource, serial) : NULL;
 
     if (resource && !data)
         *status = SF_ERROR_INTERNAL;
@@ -298,34 +178,70 @@ static const void *read_back(struct sf_renderer *renderer, sf_resource resource,
 }
 
 /* The inspected image as floats, once a ticket. */
-static enum sf_status convert_inspected(struct sf_renderer *renderer, const struct queued *queued,
+static enum sf_status convert_inspected(struct sf_renderer *renderer, const struct sf_queued *queued, const void *data,
                                         struct sf_frame *frame)
 {
-    const struct sf_inspected *inspected = &renderer->assembly->inspected;
+    const struct sf_inspected *inspected = &renderer->stage.assembly->inspected;
     uint32_t slot = (uint32_t)(queued->ticket % renderer->options.frames_kept);
-    enum sf_status status = SF_OK;
-    const void *data = read_back(renderer, inspected->readback, queued->serial, &status);
+    float **values = &renderer->stage.inspected[slot];
 
-    if (!data)
-        return status;
-    if (!renderer->inspected[slot])
-        renderer->inspected[slot] = malloc(sf_inspect_values(inspected) * sizeof(float));
-    if (!renderer->inspected[slot])
+    if (!*values)
+        *values = malloc(sf_inspect_values(inspected) * sizeof **values);
+    if (!*values)
         return SF_ERROR_MEMORY;
-    if (renderer->inspected_ticket[slot] != queued->ticket)
-        sf_inspect_convert(inspected, data, renderer->inspected[slot]);
-    renderer->inspected_ticket[slot] = queued->ticket;
-    frame->inspected = renderer->inspected[slot];
+    if (renderer->stage.inspected_ticket[slot] != queued->ticket)
+        sf_inspect_convert(inspected, data, *values);
+    renderer->stage.inspected_ticket[slot] = queued->ticket;
+    frame->inspected = *values;
     frame->inspected_width = inspected->width;
     frame->inspected_height = inspected->height;
     frame->inspected_channels = inspected->channels;
     return SF_OK;
 }
 
+static enum sf_status take_inspected(struct sf_renderer *renderer, const struct sf_queued *queued,
+                                     struct sf_frame *frame)
+{
+    const struct sf_inspected *inspected = &renderer->stage.assembly->inspected;
+    enum sf_status status = SF_OK;
+    const void *data = read_back(renderer, inspected->readback, queued->serial, &status);
+
+    if (!data)
+        return status;
+    if (inspected->words == 0)
+        return convert_inspected(renderer, queued, data, frame);
+    frame->inspected_words = data;
+    frame->inspected_word_count = inspected->words;
+    return SF_OK;
+}
+
+/* As glsl/lib/order.glsl. */
+static float float_from_order(uint32_t order)
+{
+    uint32_t bits = order & 0x80000000u ? order & 0x7fffffffu : ~order;
+    float value;
+
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+/* `counts` NULL: they did not come back. */
+static void take_counts(const struct sf_particle_counts *counts, struct sf_frame *frame)
+{
+    bool any = counts && counts->live > 0;
+
+    for (int i = 0; i < 3; i++) {
+        frame->bounds_min[i] = any ? float_from_order(counts->bounds_min[i]) : INFINITY;
+        frame->bounds_max[i] = any ? float_from_order(counts->bounds_max[i]) : -INFINITY;
+    }
+    frame->live = counts ? counts->live : 0;
+    frame->dropped = counts ? counts->dropped : 0;
+}
+
 enum sf_status sf_renderer_wait(struct sf_renderer *renderer, uint64_t ticket, struct sf_frame *frame)
 {
-    const struct queued *queued = find(renderer, ticket);
-    const struct sf_assembly *assembly = renderer->assembly;
+    const struct sf_queued *queued = find(renderer, ticket);
+    const struct sf_assembly *assembly = renderer->stage.assembly;
     enum sf_status status = queued ? sf_frame_wait(renderer->device->gpu, queued->serial) : SF_ERROR_USAGE;
 
     memset(frame, 0, sizeof *frame);
@@ -345,18 +261,25 @@ enum sf_status sf_renderer_wait(struct sf_renderer *renderer, uint64_t ticket, s
     frame->depth = read_back(renderer, assembly->read_depth, queued->serial, &status);
     frame->smoke = read_back(renderer, assembly->read_smoke, queued->serial, &status);
     frame->smoke_depths = read_back(renderer, assembly->read_depths, queued->serial, &status);
-    const struct sf_particle_counts *counts = read_back(renderer, assembly->read_counts, queued->serial, &status);
-    if (counts) {
-        frame->live = counts->live;
-        frame->dropped = counts->dropped;
-    }
+    take_counts(read_back(renderer, assembly->read_counts, queued->serial, &status), frame);
     if (!status)
-        status = convert_inspected(renderer, queued, frame);
+        status = take_inspected(renderer, queued, frame);
     if (status)
         return sf_fail(renderer->log, status, "frame %u: %s", queued->number,
                        status == SF_ERROR_MEMORY ? "out of memory" : "its results are gone");
     return SF_OK;
 }
+
+struct sf_gpu_image *sf_renderer_shown(const struct sf_renderer *renderer, uint32_t *width, uint32_t *height,
+                                       bool *float_color)
+{
+    *width = renderer->stage.assembly->width;
+    *height = renderer->stage.assembly->height;
+    *float_color = renderer->stage.assembly->float_color;
+    return renderer->stage.drawn ? renderer->stage.shown : NULL;
+}
+
+/* ---- times ---- */
 
 static enum sf_status add_timings(struct sf_renderer *renderer, struct sf_player *player, const struct sf_plan *plan,
                                   uint64_t serial, uint32_t *count)
@@ -366,31 +289,38 @@ static enum sf_status add_timings(struct sf_renderer *renderer, struct sf_player
     enum sf_status status = sf_player_times(player, serial, &times, &passes);
 
     for (uint32_t i = 0; !status && i < passes && i < plan->pass_count; i++)
-        renderer->timings[(*count)++] = (struct sf_pass_timing){.name = times[i].name,
-                                                                .begin_ns = times[i].begin_ns,
-                                                                .end_ns = times[i].end_ns,
-                                                                .bytes_read = plan->passes[i].bytes_read,
-                                                                .bytes_written = plan->passes[i].bytes_written};
+        renderer->stage.timings[(*count)++] = (struct sf_pass_timing){.name = times[i].name,
+                                                                      .begin_ns = times[i].begin_ns,
+                                                                      .end_ns = times[i].end_ns,
+                                                                      .bytes_read = plan->passes[i].bytes_read,
+                                                                      .bytes_written = plan->passes[i].bytes_written};
     return status;
 }
 
 enum sf_status sf_renderer_timings(struct sf_renderer *renderer, uint64_t ticket, const struct sf_pass_timing **timings,
                                    uint32_t *count)
 {
-    const struct queued *queued = find(renderer, ticket);
+    const struct sf_queued *queued = find(renderer, ticket);
+    const struct sf_plan *simulation = sf_particles_plan(renderer->particles), *plan = renderer->stage.assembly->plan;
+    struct sf_pass_timing *room;
     enum sf_status status = SF_OK;
 
-    *timings = renderer->timings;
+    *timings = NULL;
     *count = 0;
     if (!queued)
         return SF_ERROR_USAGE;
     if (!renderer->options.timing)
         return sf_fail(renderer->log, SF_ERROR_USAGE, "the renderer was made without timing");
+    /* The simulation's passes may be others than the last time. */
+    room = realloc(renderer->stage.timings, (simulation->pass_count + plan->pass_count) * sizeof *room);
+    if (!room)
+        return sf_fail(renderer->log, SF_ERROR_MEMORY, "timings: out of memory");
+    renderer->stage.timings = room;
     if (queued->stepped)
-        status = add_timings(renderer, sf_particles_player(renderer->particles), sf_particles_plan(renderer->particles),
-                             queued->serial, count);
+        status = add_timings(renderer, sf_particles_player(renderer->particles), simulation, queued->serial, count);
     if (!status)
-        status = add_timings(renderer, renderer->player, renderer->assembly->plan, queued->serial, count);
+        status = add_timings(renderer, renderer->stage.player, plan, queued->serial, count);
+    *timings = room;
     return status;
 }
 

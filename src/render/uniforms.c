@@ -191,6 +191,11 @@ void sf_uniforms_fill(const struct sf_scene *scene, uint32_t width, uint32_t hei
         fill_light(&scene->lights[i], &frame->lights[i]);
 }
 
+void sf_uniforms_view(const struct sf_camera_pose *pose, uint32_t width, uint32_t height, struct sf_gpu_frame *frame)
+{
+    fill_camera(pose, width, height, frame);
+}
+
 void sf_object_list_fill(const struct sf_scene *scene, struct sf_object_list *list)
 {
     uint32_t count = 0;

@@ -9,6 +9,9 @@
 void sf_uniforms_fill(const struct sf_scene *scene, uint32_t width, uint32_t height, uint32_t frame_number, double time,
                       struct sf_gpu_frame *frame);
 
+/* The eye is elsewhere than the scene's camera says. */
+void sf_uniforms_view(const struct sf_camera_pose *pose, uint32_t width, uint32_t height, struct sf_gpu_frame *frame);
+
 /* Which objects of the scene stand in the object list: planes first, then boxes, spheres and cylinders, then meshes, each in the scene's
  * order. */
 struct sf_object_list {

@@ -10,19 +10,24 @@
 
 enum { EMIT_LANES = 64 };
 
-struct sf_particles {
-    struct sf_gpu *gpu;
+/* What is made for a scene, and anew for another one. */
+struct setup {
     const struct sf_scene *scene;
-    const struct sf_log *log;
     struct sf_sim_layout layout;
-    uint64_t steps;
-    uint32_t emit_groups[3]; /* of this step; the plan reads it at each recording */
-    struct sf_sim_now now;
     struct sf_gpu_buffer *list, *counts, *triangles, *listed;
     struct sf_graph *graph;
     struct sf_plan *plan;
     struct sf_player *player;
     sf_resource upload;
+};
+
+struct sf_particles {
+    struct sf_gpu *gpu;
+    const struct sf_log *log;
+    struct setup setup;
+    uint64_t steps;
+    uint32_t emit_groups[3]; /* of this step; the plan reads it at each recording */
+    struct sf_sim_now now;
 };
 
 /* What of the scene shapes the passes: the lengths of the loops over it, as constants 1 to 4 of the shaders. */
@@ -175,19 +180,21 @@ enum sf_status sf_particles_declare(const struct sf_scene *scene, const struct s
     return declare(scene, tuning, no_groups, log, graph);
 }
 
-static enum sf_status check_capacity(const struct sf_particles *particles)
+static enum sf_status check_capacity(const struct sf_particles *particles, const struct setup *setup, bool in_place)
 {
-    const struct sf_scene *scene = particles->scene;
+    const struct sf_scene *scene = setup->scene;
     const char *path = scene->path ? scene->path : "scene";
     uint64_t capacity = (uint64_t)scene->sim.capacity, used, budget, most;
 
     if (scene->sim.capacity < 1 || capacity > SF_PARTICLES_MAX)
         return sf_fail(particles->log, SF_ERROR_SCENE, "%s: /sim/capacity: %d particles; it must be 1 to %d", path,
                        scene->sim.capacity, SF_PARTICLES_MAX);
-    if (particles->layout.first_total > capacity)
+    if (setup->layout.first_total > capacity)
         return sf_fail(particles->log, SF_ERROR_SCENE,
                        "%s: /sim/capacity: %llu particles, but the scene lists %u; raise it to that", path,
-                       (unsigned long long)capacity, particles->layout.first_total);
+                       (unsigned long long)capacity, setup->layout.first_total);
+    if (in_place)
+        return SF_OK;
     sf_gpu_memory(particles->gpu, &used, &budget);
     most = sf_gpu_info(particles->gpu)->max_storage_bytes / sizeof(struct sf_particle);
     if (used < budget && (budget - used) / (2 * sizeof(struct sf_particle)) < most)
@@ -200,9 +207,9 @@ static enum sf_status check_capacity(const struct sf_particles *particles)
 }
 
 /* The buffers that emitters read all along, from a copy made here. */
-static enum sf_status create_sources(struct sf_particles *particles)
+static enum sf_status create_sources(const struct sf_particles *particles, struct setup *setup)
 {
-    const struct sf_sim_layout *layout = &particles->layout;
+    const struct sf_sim_layout *layout = &setup->layout;
     uint64_t triangle_bytes = at_least_one(layout->triangle_total) * sizeof(struct sf_sim_triangle);
     uint64_t listed_bytes = at_least_one(layout->listed_total) * sizeof(struct sf_particle);
     struct sf_sim_triangle *triangles = calloc(1, triangle_bytes);
@@ -212,53 +219,94 @@ static enum sf_status create_sources(struct sf_particles *particles)
     if (!triangles || !listed)
         status = sf_fail(particles->log, SF_ERROR_MEMORY, "no memory for the emitters' meshes and lists");
     if (!status)
-        status = sf_sim_triangles(particles->scene, particles->log, triangles);
+        status = sf_sim_triangles(setup->scene, particles->log, triangles);
     if (!status)
         status = sf_gpu_buffer_create(particles->gpu, "sim.triangles", triangle_bytes, false, SF_ACCESS_STORAGE_READ,
-                                      triangles, &particles->triangles);
+                                      triangles, &setup->triangles);
     if (!status) {
-        sf_sim_listed_particles(particles->scene, listed);
+        sf_sim_listed_particles(setup->scene, listed);
         status = sf_gpu_buffer_create(particles->gpu, "sim.listed", listed_bytes, false, SF_ACCESS_STORAGE_READ, listed,
-                                      &particles->listed);
+                                      &setup->listed);
     }
     free(triangles);
     free(listed);
     return status;
 }
 
-static enum sf_status create_buffers(struct sf_particles *particles)
+static enum sf_status create_list(const struct sf_particles *particles, struct setup *setup)
 {
-    uint64_t bytes = (uint64_t)particles->scene->sim.capacity * sizeof(struct sf_particle);
-    enum sf_status status = create_sources(particles);
+    uint64_t bytes = (uint64_t)setup->scene->sim.capacity * sizeof(struct sf_particle);
+    enum sf_status status =
+        sf_gpu_buffer_create(particles->gpu, "particles", bytes, true, SF_ACCESS_STORAGE_READ, NULL, &setup->list);
 
     if (!status)
-        status = sf_gpu_buffer_create(particles->gpu, "particles", bytes, true, SF_ACCESS_STORAGE_READ, NULL,
-                                      &particles->list);
-    if (!status)
         status = sf_gpu_buffer_create(particles->gpu, "particles.counts", sizeof(struct sf_particle_counts), false,
-                                      SF_ACCESS_STORAGE_READ, NULL, &particles->counts);
+                                      SF_ACCESS_STORAGE_READ, NULL, &setup->counts);
     return status;
 }
 
-static enum sf_status create_player(struct sf_particles *particles)
+static enum sf_status create_player(const struct sf_particles *particles, struct setup *setup)
 {
     const struct sf_gpu_tuning *tuning = sf_gpu_tuning(particles->gpu);
     struct sf_plan_memory memory = {.needs = sf_gpu_memory_needs, .user = particles->gpu};
     enum sf_status status;
 
-    status = declare(particles->scene, tuning, particles->emit_groups, particles->log, &particles->graph);
+    status = declare(setup->scene, tuning, particles->emit_groups, particles->log, &setup->graph);
     if (!status)
-        status = sf_plan_create(particles->graph, &memory, particles->log, &particles->plan);
+        status = sf_plan_create(setup->graph, &memory, particles->log, &setup->plan);
     if (!status)
-        status = sf_player_create(particles->gpu, particles->plan, &particles->player);
+        status = sf_player_create(particles->gpu, setup->plan, &setup->player);
     if (status)
         return status;
-    particles->upload = sf_graph_find(particles->graph, "sim.now");
-    sf_player_bind_buffer(particles->player, sf_graph_find(particles->graph, "particles"), particles->list);
-    sf_player_bind_buffer(particles->player, sf_graph_find(particles->graph, "particles.counts"), particles->counts);
-    sf_player_bind_buffer(particles->player, sf_graph_find(particles->graph, "sim.triangles"), particles->triangles);
-    sf_player_bind_buffer(particles->player, sf_graph_find(particles->graph, "sim.listed"), particles->listed);
+    setup->upload = sf_graph_find(setup->graph, "sim.now");
+    sf_player_bind_buffer(setup->player, sf_graph_find(setup->graph, "particles"), setup->list);
+    sf_player_bind_buffer(setup->player, sf_graph_find(setup->graph, "particles.counts"), setup->counts);
+    sf_player_bind_buffer(setup->player, sf_graph_find(setup->graph, "sim.triangles"), setup->triangles);
+    sf_player_bind_buffer(setup->player, sf_graph_find(setup->graph, "sim.listed"), setup->listed);
     return SF_OK;
+}
+
+/* The list itself serves any scene of the same capacity. */
+static bool list_serves(const struct setup *setup, const struct sf_scene *scene)
+{
+    return setup->list && setup->scene->sim.capacity == scene->sim.capacity;
+}
+
+/* All for `scene`; the list in common with the setup in use when it serves. Leaves what it has after a failure. */
+static enum sf_status make_setup(const struct sf_particles *particles, const struct sf_scene *scene,
+                                 struct setup *setup)
+{
+    bool in_place = list_serves(&particles->setup, scene);
+    enum sf_status status;
+
+    *setup = (struct setup){.scene = scene};
+    sf_sim_layout_fill(scene, &setup->layout);
+    status = check_capacity(particles, setup, in_place);
+    if (!status && in_place) {
+        setup->list = particles->setup.list;
+        setup->counts = particles->setup.counts;
+    } else if (!status) {
+        status = create_list(particles, setup);
+    }
+    if (!status)
+        status = create_sources(particles, setup);
+    if (!status)
+        status = create_player(particles, setup);
+    return status;
+}
+
+/* Destroys what is not `other`'s. */
+static void drop_setup(struct setup *setup, const struct setup *other)
+{
+    sf_player_destroy(&setup->player);
+    sf_plan_destroy(&setup->plan);
+    sf_graph_destroy(&setup->graph);
+    if (setup->list != other->list)
+        sf_gpu_buffer_destroy(&setup->list);
+    if (setup->counts != other->counts)
+        sf_gpu_buffer_destroy(&setup->counts);
+    sf_gpu_buffer_destroy(&setup->triangles);
+    sf_gpu_buffer_destroy(&setup->listed);
 }
 
 enum sf_status sf_particles_create(struct sf_gpu *gpu, const struct sf_scene *scene, const struct sf_log *log,
@@ -271,16 +319,8 @@ enum sf_status sf_particles_create(struct sf_gpu *gpu, const struct sf_scene *sc
     if (!particles)
         return sf_fail(log, SF_ERROR_MEMORY, "no memory for the simulation");
     particles->gpu = gpu;
-    particles->scene = scene;
     particles->log = log;
-    sf_sim_layout_fill(scene, &particles->layout);
-    status = check_capacity(particles);
-    if (!status)
-        status = create_buffers(particles);
-    if (!status)
-        status = create_player(particles);
-    if (!status)
-        status = sf_particles_reset(particles);
+    status = sf_particles_restart(particles, scene);
     if (status)
         sf_particles_destroy(&particles);
     *out = particles;
@@ -289,35 +329,54 @@ enum sf_status sf_particles_create(struct sf_gpu *gpu, const struct sf_scene *sc
 
 void sf_particles_destroy(struct sf_particles **particles)
 {
-    struct sf_particles *dying = *particles;
+    const struct setup none = {0};
 
-    if (!dying)
+    if (!*particles)
         return;
-    sf_player_destroy(&dying->player);
-    sf_plan_destroy(&dying->plan);
-    sf_graph_destroy(&dying->graph);
-    sf_gpu_buffer_destroy(&dying->list);
-    sf_gpu_buffer_destroy(&dying->counts);
-    sf_gpu_buffer_destroy(&dying->triangles);
-    sf_gpu_buffer_destroy(&dying->listed);
-    free(dying);
+    drop_setup(&(*particles)->setup, &none);
+    free(*particles);
     *particles = NULL;
+}
+
+enum sf_status sf_particles_restart(struct sf_particles *particles, const struct sf_scene *scene)
+{
+    struct setup old = particles->setup, fresh;
+    enum sf_status status = make_setup(particles, scene, &fresh);
+
+    if (!status) {
+        particles->setup = fresh;
+        status = sf_particles_reset(particles);
+    }
+    if (status) {
+        particles->setup = old;
+        drop_setup(&fresh, &old);
+    } else {
+        drop_setup(&old, &fresh);
+    }
+    return status;
+}
+
+void sf_particles_set_scene(struct sf_particles *particles, const struct sf_scene *scene)
+{
+    particles->setup.scene = scene;
 }
 
 enum sf_status sf_particles_reset(struct sf_particles *particles)
 {
-    uint32_t first = particles->layout.first_total;
+    const struct setup *setup = &particles->setup;
+    uint32_t first = setup->layout.first_total;
     struct sf_particle *list = calloc(at_least_one(first), sizeof *list);
     struct sf_particle_counts counts;
     enum sf_status status = SF_OK;
 
     if (!list)
         return sf_fail(particles->log, SF_ERROR_MEMORY, "no memory for %u listed particles", first);
-    sf_sim_first_particles(particles->scene, list, &counts);
+    sf_sim_first_particles(setup->scene, list, &counts);
+    particles->steps = SF_STEPS_UNKNOWN;
     if (first)
-        status = sf_gpu_buffer_write(particles->list, 0, list, first * sizeof *list);
+        status = sf_gpu_buffer_write(setup->list, 0, list, first * sizeof *list);
     if (!status)
-        status = sf_gpu_buffer_write(particles->counts, 0, &counts, sizeof counts);
+        status = sf_gpu_buffer_write(setup->counts, 0, &counts, sizeof counts);
     if (!status)
         particles->steps = 0;
     free(list);
@@ -326,7 +385,8 @@ enum sf_status sf_particles_reset(struct sf_particles *particles)
 
 enum sf_status sf_particles_step(struct sf_particles *particles)
 {
-    void *upload = sf_player_upload(particles->player, particles->upload);
+    const struct setup *setup = &particles->setup;
+    void *upload = sf_player_upload(setup->player, setup->upload);
     size_t bytes;
     enum sf_status status;
 
@@ -336,11 +396,11 @@ enum sf_status sf_particles_step(struct sf_particles *particles)
             "the simulation has nowhere to put step %llu; a step is recorded between sf_frame_begin and sf_frame_end",
             (unsigned long long)particles->steps);
     /* Composed in ordinary memory, since mapped memory may be slow to read. */
-    bytes = sf_sim_feed(particles->scene, &particles->layout, particles->steps, &particles->now);
+    bytes = sf_sim_feed(setup->scene, &setup->layout, particles->steps, &particles->now);
     memcpy(upload, &particles->now, bytes);
     particles->emit_groups[0] = (particles->now.births + EMIT_LANES - 1) / EMIT_LANES;
     particles->emit_groups[1] = particles->emit_groups[2] = 1;
-    status = sf_player_play(particles->player);
+    status = sf_player_play(setup->player);
     if (!status)
         particles->steps++;
     return status;
@@ -353,30 +413,30 @@ uint64_t sf_particles_steps(const struct sf_particles *particles)
 
 double sf_particles_dt(const struct sf_particles *particles)
 {
-    return 1 / sf_sim_step_rate(particles->scene);
+    return 1 / sf_sim_step_rate(particles->setup.scene);
 }
 
 struct sf_gpu_buffer *sf_particles_list(struct sf_particles *particles)
 {
-    return particles->list;
+    return particles->setup.list;
 }
 
 struct sf_gpu_buffer *sf_particles_counts(struct sf_particles *particles)
 {
-    return particles->counts;
+    return particles->setup.counts;
 }
 
 uint32_t sf_particles_capacity(const struct sf_particles *particles)
 {
-    return (uint32_t)particles->scene->sim.capacity;
+    return (uint32_t)particles->setup.scene->sim.capacity;
 }
 
 struct sf_player *sf_particles_player(struct sf_particles *particles)
 {
-    return particles->player;
+    return particles->setup.player;
 }
 
 const struct sf_plan *sf_particles_plan(const struct sf_particles *particles)
 {
-    return particles->plan;
+    return particles->setup.plan;
 }

@@ -12,11 +12,17 @@ struct sf_particles;
 enum sf_status sf_particles_create(struct sf_gpu *gpu, const struct sf_scene *scene, const struct sf_log *log,
                                    struct sf_particles **particles);
 void sf_particles_destroy(struct sf_particles **particles);
+/* Takes another scene and starts from time 0: all that is made for it is made anew, but for the list where the capacity
+ * stays. When it fails, the old scene goes on, from time 0 at worst. */
+enum sf_status sf_particles_restart(struct sf_particles *particles, const struct sf_scene *scene);
+/* Takes a scene whose simulation is the same; it goes on. */
+void sf_particles_set_scene(struct sf_particles *particles, const struct sf_scene *scene);
 /* Back to time 0: the explicit lists, and nothing else. Waits for idle. */
 enum sf_status sf_particles_reset(struct sf_particles *particles);
 /* Records one fixed step; between sf_frame_begin and sf_frame_end. */
 enum sf_status sf_particles_step(struct sf_particles *particles);
-/* Steps made since the start, and the length of one in s. */
+/* Steps made since the start (SF_STEPS_UNKNOWN after a reset that failed: reset it), and the length of one in s. */
+#define SF_STEPS_UNKNOWN UINT64_MAX
 uint64_t sf_particles_steps(const struct sf_particles *particles);
 double sf_particles_dt(const struct sf_particles *particles);
 

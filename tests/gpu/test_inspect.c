@@ -73,7 +73,8 @@ static void test_usage(void **state)
     assert_null(renderer);
     assert_non_null(strstr(last_message, "did you mean 'camera.raw'"));
     assert_non_null(strstr(last_message, "light.map, "));
-    options.inspect = "particles"; /* a buffer */
+    assert_non_null(strstr(last_message, "particles, ")); /* a buffer */
+    options.inspect = "read.color";                       /* comes back anyway */
     assert_int_equal(sf_renderer_create(device, scene, &options, &test_log, &renderer), SF_ERROR_USAGE);
     options.inspect = "";
     assert_int_equal(sf_renderer_create(device, scene, &options, &test_log, &renderer), SF_ERROR_USAGE);

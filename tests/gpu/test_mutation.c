@@ -64,7 +64,7 @@ static void must(enum sf_status status)
 
 static void open_shadow(struct stage *stage, const struct sf_plan_memory *memory)
 {
-    struct sf_shadow_scene shadow = sf_assembly_shadow(stage->assembly);
+    struct sf_shadow_scene shadow = sf_drawn_shadow(&stage->assembly->drawn);
     uint32_t width = shadow.cells->size * shadow.cells->count, height = shadow.cells->size;
     float *zeros;
 
@@ -96,7 +96,7 @@ static void open_stage(struct stage *stage, struct sf_gpu *gpu, const struct sf_
     must(sf_particles_create(gpu, scene, &kit_log, &stage->particles));
     options.capacity = sf_particles_capacity(stage->particles);
     must(sf_assembly_create(scene, &options, sf_gpu_tuning(gpu), &memory, &kit_log, &stage->assembly));
-    must(sf_assets_init(gpu, stage->assembly, &kit_log, &stage->assets));
+    must(sf_assets_init(gpu, &stage->assembly->drawn, NULL, &kit_log, &stage->assets));
     must(sf_player_create(gpu, stage->assembly->plan, &stage->player));
     sf_assets_bind(&stage->assets, stage->assembly, stage->player);
     sf_player_bind_buffer(stage->player, stage->assembly->method.particles, sf_particles_list(stage->particles));
@@ -137,10 +137,10 @@ static void record_shadow(struct stage *stage)
 
     if (!stage->shadow_player)
         return;
-    memcpy(upload(stage->shadow_player, sf_graph_find(stage->shadow_graph, "shadow.cells")), assembly->shadow.cell,
-           sizeof assembly->shadow.cell);
-    memcpy(upload(stage->shadow_player, sf_graph_find(stage->shadow_graph, "objects")), assembly->objects,
-           sizeof assembly->objects);
+    memcpy(upload(stage->shadow_player, sf_graph_find(stage->shadow_graph, "shadow.cells")),
+           assembly->drawn.shadow.cell, sizeof assembly->drawn.shadow.cell);
+    memcpy(upload(stage->shadow_player, sf_graph_find(stage->shadow_graph, "objects")), assembly->drawn.objects,
+           sizeof assembly->drawn.objects);
     must(sf_player_play(stage->shadow_player));
 }
 
@@ -150,9 +150,9 @@ static void record_picture(struct stage *stage)
     struct sf_gpu_frame frame;
 
     sf_uniforms_fill(stage->scene, SIDE, SIDE, stage->number, stage->number / (double)stage->scene->sim.fps, &frame);
-    sf_shadow_fill(&assembly->shadow, &frame);
+    sf_shadow_fill(&assembly->drawn.shadow, &frame);
     memcpy(upload(stage->player, assembly->method.frame), &frame, sizeof frame);
-    memcpy(upload(stage->player, assembly->objects_upload), assembly->objects, sizeof assembly->objects);
+    memcpy(upload(stage->player, assembly->objects_upload), assembly->drawn.objects, sizeof assembly->drawn.objects);
     if (stage->assets.row->update)
         stage->assets.row->update(&assembly->method, assembly->state);
     must(sf_player_play(stage->player));

@@ -74,8 +74,9 @@ void sf_device_memory(const struct sf_device *device, uint64_t *used, uint64_t *
 /* The shaders of the library, "thick/march.comp" and so on, as under glsl/; NULL behind the last. */
 const char *sf_shader_name(uint32_t index);
 /* Another SPIR-V for the shader of that name (copied): every pipeline that uses it is made anew, and later ones use it.
- * Waits for the device. When it cannot be (SF_ERROR_USAGE: no such shader, or not SPIR-V; else what the driver says),
- * everything stays as it was. `words` NULL: the library's own again. */
+ * Waits for the device. When it cannot be (SF_ERROR_USAGE: no such shader, not SPIR-V, or of another stage, or with
+ * bindings or push constants that its passes do not have; else what the driver says), everything stays as it was.
+ * `words` NULL: the library's own again. */
 enum sf_status sf_device_set_shader(struct sf_device *device, const char *name, const uint32_t *words, size_t bytes);
 
 /* ---- scenes ---- */
@@ -172,6 +173,7 @@ struct sf_renderer_options {
     const char *inspect;
     /* The picture stays on the device for sf_window_show; color, depth and smoke do not come back, all else does. */
     bool shown;
+    bool returned; /* with `shown`: color and depth (and what `aovs` asks for) come back all the same */
 };
 /* The scene and device must outlive it. */
 enum sf_status sf_renderer_create(struct sf_device *device, const struct sf_scene *scene,

@@ -1,0 +1,49 @@
+/* The renderer's insides: renderer.c plays it, renderer_parts.c makes and changes it, print.c prints it. */
+#ifndef SF_RENDER_RENDERER_H
+#define SF_RENDER_RENDERER_H
+
+#include "render/assemble.h"
+#include "render/assets.h"
+#include "render/internal.h"
+#include "sim/particles.h"
+
+enum { SF_FRAMES_KEPT_MAX = 8, SF_TICKETS = 16 };
+
+/* A frame that was queued. */
+struct sf_queued {
+    uint64_t ticket, serial;
+    uint32_t number;
+    double time;
+    bool stepped; /* simulation steps went with it */
+    float world_to_camera[16], world_to_clip[16];
+};
+
+/* The frame's graph made real, and what goes with it: all made anew when its shape changes. */
+struct sf_stage {
+    struct sf_assembly *assembly;
+    struct sf_player *player;
+    struct sf_pass_timing *timings;       /* room for all passes */
+    float *inspected[SF_FRAMES_KEPT_MAX]; /* by ticket; NULL until the first is asked for */
+    uint64_t inspected_ticket[SF_FRAMES_KEPT_MAX];
+    struct sf_gpu_image *shown; /* NULL: not asked for */
+    uint32_t shown_accesses;    /* that it was made for */
+    bool drawn;                 /* it holds a picture */
+};
+
+struct sf_renderer {
+    struct sf_device *device;
+    const struct sf_scene *scene;
+    const struct sf_log *log;
+    struct sf_renderer_options options; /* `inspect` is our own copy */
+    struct sf_camera_pose pose;         /* instead of the scene's camera, when: */
+    bool posed;
+    struct sf_particles *particles;
+    struct sf_assets assets;
+    struct sf_stage stage;
+    struct sf_queued queued[SF_TICKETS]; /* by ticket */
+    uint64_t tickets, void_tickets;      /* given so far; of these the first ones, whose results are gone */
+    uint64_t record_ns;
+    uint32_t recorded; /* passes */
+};
+
+#endif
