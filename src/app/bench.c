@@ -403,7 +403,7 @@ enum sf_status sf_bench_run(const struct sf_arguments *arguments)
     if (!status)
         status = sf_session_scene(arguments, arguments->files.items[0], &scene);
     if (!status)
-        status = sf_session_device(arguments, &device);
+        status = sf_session_device(arguments, NULL, &device);
     if (!status)
         status = sf_session_size(arguments, device);
     if (!status) {

@@ -114,7 +114,7 @@ enum sf_status sf_bench_sort_run(const struct sf_arguments *arguments)
     if (!status && !(rows.timings = calloc(rows.count, sizeof *rows.timings)))
         status = sf_console_fail(SF_ERROR_MEMORY, "out of memory");
     if (!status)
-        status = sf_session_device(arguments, &device);
+        status = sf_session_device(arguments, NULL, &device);
     if (!status)
         status = measure(arguments, device, &rows);
     if (!status)

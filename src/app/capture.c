@@ -99,7 +99,7 @@ static enum sf_status open_capture(struct capture *capture)
     sf_scene_describe(capture->scene, &capture->info);
     snprintf(capture->hash, sizeof capture->hash, "%016llx", (unsigned long long)capture->info.hash);
     choose_threads(capture);
-    status = sf_session_device(arguments, &capture->device);
+    status = sf_session_device(arguments, NULL, &capture->device);
     if (!status)
         status = sf_session_size(arguments, capture->device);
     if (!status)

@@ -2,6 +2,11 @@
 
 #include "bench.h"
 #include "capture.h"
+#if defined(SF_VIEWER)
+#include "view/view.h"
+#else
+#include "console.h"
+#endif
 
 #define FIELD(f) offsetof(struct sf_arguments, f)
 
@@ -64,6 +69,29 @@ static const struct sf_option capture_options[] = {
      .doc = "that write files (default: one a core, at most 4)", .min = 1, .max = 64},
     {.name = NULL}};
 
+static const struct sf_option view_options[] = {
+    {"size", 's', SF_OPTION_SIZE, FIELD(size), .value = "WxH", .doc = "of the window (default: as last time)", .min = 1,
+     .max = SIDE_MAX},
+    {"frame", 'f', SF_OPTION_NUMBER, FIELD(first_frame), .value = "N", .initial = "0", .doc = "begin there", .min = 0,
+     .max = 1000000},
+    {"paused", 0, SF_OPTION_FLAG, FIELD(paused), .doc = "begin with time standing still"},
+    {"fullscreen", 0, SF_OPTION_FLAG, FIELD(fullscreen), .doc = "fill the screen"},
+    {"bare", 0, SF_OPTION_FLAG, FIELD(bare), .doc = "begin without panels (Tab shows them)"},
+    {"present-mode", 0, SF_OPTION_TEXT, FIELD(present_mode), .value = "NAME",
+     .doc = "fifo (waits for the screen), fifo_relaxed, mailbox, immediate"},
+    {"goal", 0, SF_OPTION_REAL, FIELD(goal), .value = "MS",
+     .doc = "a picture's time while the camera moves; smoke becomes coarser to hold it", .min = 1, .max = 10000},
+    {"no-adapt", 0, SF_OPTION_FLAG, FIELD(no_adapt), .doc = "smoke never becomes coarser"},
+    {"shots", 0, SF_OPTION_TEXT, FIELD(folder), .value = "FOLDER", .initial = "shots",
+     .doc = "for screenshots and recordings"},
+    {"shaders", 0, SF_OPTION_TEXT, FIELD(shaders), .value = "FOLDER", .initial = "glsl",
+     .doc = "sources that are watched, compiled and taken up"},
+    {"exit-after", 0, SF_OPTION_NUMBER, FIELD(exit_after), .value = "N", .doc = "close after N times shown", .min = 1,
+     .max = UINT32_MAX},
+    {"report", 0, SF_OPTION_TEXT, FIELD(json_file), .value = "FILE",
+     .doc = "at the end write counts and times as JSON (- is standard output)"},
+    {.name = NULL}};
+
 static const struct sf_option bench_options[] = {
     {"frames", 'f', SF_OPTION_TEXT, FIELD(frames), .value = "LIST", .initial = "96-127",
      .doc = "frames that are timed"},
@@ -93,6 +121,7 @@ static const struct sf_option params_options[] = {{"format", 0, SF_OPTION_WORD, 
 
 static const struct sf_option *const capture_tables[] = {capture_options, size_options,   scene_options,
                                                          device_options,  common_options, NULL};
+static const struct sf_option *const view_tables[] = {view_options, scene_options, device_options, common_options, NULL};
 static const struct sf_option *const bench_tables[] = {bench_options,  size_options,   scene_options,
                                                        device_options, common_options, NULL};
 static const struct sf_option *const devices_tables[] = {devices_options, common_options, NULL};
@@ -109,7 +138,20 @@ static const char *const bench_notes[] = {
 static const char *const graph_notes[] = {"  sfumato graph scenes/plume.json --format dot | dot -Tsvg > graph.svg",
                                           NULL};
 
+static const char *const view_notes[] = {
+    "Without SCENE: scenes/plume.json, or the last one. ? lists the keys, Tab hides the panels.", NULL};
+
+#if !defined(SF_VIEWER)
+static enum sf_status sf_view_run(const struct sf_arguments *arguments)
+{
+    (void)arguments;
+    return sf_console_fail(SF_ERROR_USAGE, "this build has no viewer: configure it with meson -Dviewer=enabled");
+}
+#endif
+
 const struct sf_command sf_commands[] = {
+    {"view", "[SCENE]", "Opens a window on a scene, with every knob to turn.", view_notes, view_tables, 0, 1,
+     sf_view_run},
     {"capture", "SCENE", "Renders frames of a scene into EXR and PNG files.", capture_notes, capture_tables, 1, 1,
      sf_capture_run},
     {"bench", "SCENE", "Times every pass of a scene's frames on the device.", bench_notes, bench_tables, 0, 1,

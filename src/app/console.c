@@ -15,6 +15,7 @@ enum { MESSAGE_MAX = 4096, LINE_MAX_BYTES = 512 };
 static struct {
     pthread_mutex_t lock;
     struct sf_log log;
+    unsigned errors; /* printed so far */
     bool terminal, color;
     char line[LINE_MAX_BYTES]; /* the moving line as it stands; "" when there is none */
 } console = {.lock = PTHREAD_MUTEX_INITIALIZER};
@@ -29,6 +30,7 @@ static void print_message(enum sf_log_level level, const char *message)
         [SF_LOG_ERROR] = "\033[1;31m", [SF_LOG_WARNING] = "\033[1;33m", [SF_LOG_INFO] = "", [SF_LOG_DEBUG] = "\033[2m"};
 
     pthread_mutex_lock(&console.lock);
+    console.errors += level == SF_LOG_ERROR;
     if (console.line[0])
         fputs("\r\033[K", stderr);
     if (console.color && colors[level][0])
@@ -61,6 +63,16 @@ void sf_console_start(enum sf_log_level level)
 const struct sf_log *sf_console_log(void)
 {
     return &console.log;
+}
+
+unsigned sf_console_errors(void)
+{
+    unsigned errors;
+
+    pthread_mutex_lock(&console.lock);
+    errors = console.errors;
+    pthread_mutex_unlock(&console.lock);
+    return errors;
 }
 
 bool sf_console_moves(void)

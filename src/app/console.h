@@ -18,6 +18,8 @@
 void sf_console_start(enum sf_log_level level);
 /* The log that the library gets. */
 const struct sf_log *sf_console_log(void);
+/* Errors that were printed so far. */
+unsigned sf_console_errors(void);
 bool sf_console_moves(void);
 bool sf_console_quiet(void);
 

@@ -49,6 +49,12 @@ struct sf_arguments {
     const char *json_file, *csv_file, *trace_file, *compare_file;
     bool sort;
     const char *sizes;
+    /* view */
+    const char *present_mode; /* NULL: as last time */
+    bool fullscreen, bare, paused, no_adapt;
+    struct sf_argument_real goal; /* ms */
+    uint32_t first_frame, exit_after;
+    const char *folder, *shaders; /* for pictures; of GLSL sources */
     /* devices, graph, params */
     bool json;
     const char *format;

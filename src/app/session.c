@@ -7,36 +7,68 @@
 #include "console.h"
 #include "progress.h"
 
+void sf_session_sets_finish(char **sets, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++)
+        free(sets[i]);
+    free(sets);
+}
+
+static char *join(const char *a, const char *b)
+{
+    size_t room = strlen(a) + strlen(b) + 1;
+    char *text = malloc(room);
+
+    if (text)
+        snprintf(text, room, "%s%s", a, b);
+    return text;
+}
+
+enum sf_status sf_session_sets(const struct sf_arguments *arguments, char ***sets, uint32_t *count)
+{
+    size_t wanted = arguments->sets.count + (arguments->method ? 1 : 0);
+    bool failed;
+
+    *count = 0;
+    *sets = malloc((wanted + 1) * sizeof **sets);
+    failed = !*sets;
+    for (size_t i = 0; i < wanted && !failed; i++) {
+        bool last = i == arguments->sets.count;
+        char *text = join(last ? "method=" : "", last ? arguments->method : arguments->sets.items[i]);
+
+        failed = !text;
+        if (text)
+            (*sets)[(*count)++] = text;
+    }
+    if (!failed)
+        return SF_OK;
+    sf_session_sets_finish(*sets, *count);
+    *sets = NULL;
+    *count = 0;
+    return sf_console_fail(SF_ERROR_MEMORY, "out of memory");
+}
+
 enum sf_status sf_session_scene(const struct sf_arguments *arguments, const char *path, struct sf_scene **scene)
 {
-    size_t count = arguments->sets.count, room = arguments->method ? strlen(arguments->method) + sizeof "method=" : 1;
-    const char **sets = malloc((count + 1) * sizeof *sets);
-    char *method = malloc(room);
-    enum sf_status status;
+    char **sets;
+    uint32_t count;
+    enum sf_status status = sf_session_sets(arguments, &sets, &count);
 
-    if (!sets || !method) {
-        free(sets);
-        free(method);
-        return sf_console_fail(SF_ERROR_MEMORY, "out of memory");
-    }
-    for (size_t i = 0; i < count; i++)
-        sets[i] = arguments->sets.items[i];
-    if (arguments->method) {
-        snprintf(method, room, "method=%s", arguments->method);
-        sets[count++] = method;
-    }
-    status = sf_scene_load(path, sets, (uint32_t)count, sf_console_log(), scene);
-    free(sets);
-    free(method);
+    if (status)
+        return status;
+    status = sf_scene_load(path, (const char *const *)sets, count, sf_console_log(), scene);
+    sf_session_sets_finish(sets, count);
     return status;
 }
 
-enum sf_status sf_session_device(const struct sf_arguments *arguments, struct sf_device **device)
+enum sf_status sf_session_device(const struct sf_arguments *arguments, const struct sf_surface_source *surface,
+                                 struct sf_device **device)
 {
     struct sf_device_options options = {.device = arguments->device,
                                         .validate = arguments->validate,
                                         .budget_bytes = (uint64_t)arguments->memory << 20,
-                                        .no_cache = arguments->no_cache};
+                                        .no_cache = arguments->no_cache,
+                                        .surface = surface};
 
     return sf_device_create(&options, sf_console_log(), device);
 }

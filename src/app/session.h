@@ -6,7 +6,12 @@
 #include "sfumato/sfumato.h"
 
 enum sf_status sf_session_scene(const struct sf_arguments *arguments, const char *path, struct sf_scene **scene);
-enum sf_status sf_session_device(const struct sf_arguments *arguments, struct sf_device **device);
+/* The sets of --set, and of --method, as sf_scene_load wants them. */
+enum sf_status sf_session_sets(const struct sf_arguments *arguments, char ***sets, uint32_t *count);
+void sf_session_sets_finish(char **sets, uint32_t count);
+/* `surface`: NULL unless it is for a window. */
+enum sf_status sf_session_device(const struct sf_arguments *arguments, const struct sf_surface_source *surface,
+                                 struct sf_device **device);
 /* Can the device draw pictures of the size asked for? SF_ERROR_USAGE names its limit. */
 enum sf_status sf_session_size(const struct sf_arguments *arguments, const struct sf_device *device);
 /* SF_ERROR_INTERNAL when --validate was given and the layers have spoken. */

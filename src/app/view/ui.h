@@ -21,7 +21,8 @@ extern "C" {
 struct GLFWwindow;
 struct sf_ui;
 
-/* Hooks itself into the window's callbacks (those set before are called on). `scale` is the screen's: 1, 1.5, 2. */
+/* Hooks itself into the window's callbacks (those set before are called on). `scale` is the screen's: 1, 1.5, 2. Without
+ * a window (NULL) it is fed by the functions at the end. A second one beside the first is SF_ERROR_USAGE. */
 enum sf_status sf_ui_create(struct GLFWwindow *window, float scale, struct sf_ui **ui);
 void sf_ui_destroy(struct sf_ui **ui);
 /* The font's picture for sf_window_set_font; the ui's own. */
@@ -29,10 +30,14 @@ void sf_ui_font(const struct sf_ui *ui, const uint8_t **coverage, uint32_t *widt
 void sf_ui_begin(struct sf_ui *ui);
 /* The triangles of all that was drawn since begin; good until the next end. */
 void sf_ui_end(struct sf_ui *ui, struct sf_overlay *overlay);
-/* Mouse or keys are for the panels now, not for the picture. */
+/* Mouse or keys are for the panels now, not for the picture. Keys are while a field is typed in, a list is open or the
+ * panels are walked through by keys (Ctrl+Tab, or Tab out of a field; Escape ends it): a click on a panel leaves them to
+ * the picture. */
 bool sf_ui_takes_mouse(void);
 bool sf_ui_takes_keys(void);
-/* Height of a line of controls; font size. */
+/* Seconds until the panels have something new to show by themselves (a tooltip, a cursor that blinks): draw again then. */
+double sf_ui_due(void);
+/* Height of a line of controls with the gap below it; the screen's scale, by which lengths of your own go. */
 float sf_ui_line(void);
 float sf_ui_scale(void);
 
@@ -41,20 +46,24 @@ enum sf_ui_panel_flags {
     SF_UI_FIXED = 1,    /* neither moves nor folds: x, y, width, height are set anew each time */
     SF_UI_CLEAR = 2,    /* no background, no title, does not take the mouse */
     SF_UI_UNTITLED = 4, /* no title bar */
+    SF_UI_SOLID = 8,    /* opaque and square: part of the window's frame, not over the picture */
+    SF_UI_QUIET = 16,   /* does not take the mouse */
 };
-/* False when folded or outside; end it in either case. With `open` (may be NULL) it has a cross that clears it. */
+/* False when folded or outside; end it in either case. With `open` (may be NULL) it has a cross that clears it. Height 0:
+ * as high as its content. */
 bool sf_ui_panel_begin(const char *title, float x, float y, float width, float height, unsigned flags, bool *open);
 void sf_ui_panel_end(void);
-/* A part of a panel that scrolls by itself; height 0: all that is left. */
+/* A part of a panel that scrolls by itself; height 0: all that is left. End it in either case. */
 bool sf_ui_child_begin(const char *name, float height);
 void sf_ui_child_end(void);
 bool sf_ui_tabs_begin(const char *name);
-bool sf_ui_tab_begin(const char *label); /* end only when true */
+void sf_ui_tab_choose(const char *label); /* before its begin: opens it */
+bool sf_ui_tab_begin(const char *label);  /* end only when true */
 void sf_ui_tab_end(void);
 void sf_ui_tabs_end(void);
 bool sf_ui_section(const char *label, bool open); /* folds; `open` at first. Nothing to end */
-/* A box in the middle of the window over everything; false when it is closed. `open` is cleared by Escape or a click
- * beside it. End only when true. */
+/* A box in the middle of the window over everything; false when it is closed. `open` is cleared by Escape, its cross or a
+ * click beside it. End only when true. Keys other than Escape still go to the picture. */
 bool sf_ui_box_begin(const char *title, bool *open);
 void sf_ui_box_end(void);
 
@@ -70,8 +79,10 @@ void sf_ui_disable(bool disabled); /* pairs with sf_ui_enable */
 void sf_ui_enable(void);
 
 /* ---- words ---- */
+/* One line, level with the controls beside it and as high; at most 2047 bytes. */
 void sf_ui_text(const char *format, ...) SF_UI_PRINTF(1, 2);
 void sf_ui_text_color(uint32_t color, const char *format, ...) SF_UI_PRINTF(2, 3);
+/* A paragraph, set closer. */
 void sf_ui_text_wrapped(uint32_t color, const char *text);
 /* Shown while the mouse rests on the last thing. */
 void sf_ui_tooltip(const char *format, ...) SF_UI_PRINTF(1, 2);
@@ -82,13 +93,16 @@ bool sf_ui_button(const char *label);
 bool sf_ui_small_button(const char *label);
 bool sf_ui_selectable(const char *label, bool selected);
 bool sf_ui_checkbox(const char *label, bool *value);
+/* Clamped, typed numbers too (Ctrl and click). Bounds within half of the type's range. */
 bool sf_ui_slider(const char *label, float *value, float min, float max, const char *format, bool logarithmic);
 bool sf_ui_slider_int(const char *label, int *value, int min, int max, bool logarithmic);
 /* Numbers that are dragged sideways or typed after a double click. `speed`: change a px. */
-bool sf_ui_drag(const char *label, float *values, unsigned count, float speed, float min, float max, const char *format);
+bool sf_ui_drag(const char *label, float *values, unsigned count, float speed, float min, float max,
+                const char *format);
 bool sf_ui_color(const char *label, float rgb[3], bool hdr);
 bool sf_ui_choice(const char *label, int *value, const char *const *choices); /* NULL-terminated */
-/* True when Enter is pressed or the field is left after a change. */
+/* True when Enter is pressed or the field is left after a change; Escape brings back what was there. `text` may be filled
+ * anew before each call: while the field is typed in, what was typed prevails. At most 1024 bytes. */
 bool sf_ui_input(const char *label, const char *hint, char *text, unsigned room);
 /* True at every sign that is typed. */
 bool sf_ui_search(const char *label, const char *hint, char *text, unsigned room, bool focus);
@@ -119,9 +133,15 @@ float sf_ui_text_width(const char *text);
 void sf_ui_mouse(float *x, float *y);
 void sf_ui_mouse_moved(float *dx, float *dy);
 float sf_ui_wheel(void);
-bool sf_ui_mouse_down(int button);    /* 0 left, 1 right, 2 middle */
+bool sf_ui_mouse_down(int button); /* 0 left, 1 right, 2 middle */
 bool sf_ui_mouse_clicked(int button);
 bool sf_ui_mouse_double(int button);
+
+/* ---- without a window: for tests ---- */
+void sf_ui_feed_size(uint32_t width, uint32_t height);
+void sf_ui_feed_mouse(float x, float y, bool down);
+/* Typed in the next frame. Tab, newline, Escape (033) and backspace are pressed as keys. */
+void sf_ui_feed_text(const char *text);
 
 #ifdef __cplusplus
 }

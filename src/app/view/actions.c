@@ -1,0 +1,161 @@
+/* What keys and panels ask for. */
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "../console.h"
+#include "view.h"
+
+void sf_view_note(struct sf_view *view, enum sf_log_level level, const char *format, ...)
+{
+    char text[SF_NOTE_BYTES];
+    va_list args;
+
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    view->log.write(view->log.user, level, text);
+}
+
+void sf_view_set(struct sf_view *view, const char *assignment)
+{
+    sf_model_set(&view->model, assignment);
+    view->settle = true;
+}
+
+void sf_view_reset(struct sf_view *view, const char *path)
+{
+    sf_model_reset(&view->model, path);
+    view->settle = true;
+}
+
+/* The scene's name without folder and ending, for titles and files. */
+static void stem_of(const char *path, char *stem, size_t room)
+{
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
+
+    snprintf(stem, room, "%.*s", dot && dot > name ? (int)(dot - name) : (int)strlen(name), name);
+}
+
+void sf_view_stem(const struct sf_view *view, char *stem, size_t room)
+{
+    stem_of(view->model.path, stem, room);
+}
+
+void sf_view_opened(struct sf_view *view)
+{
+    char stem[SF_NAME_BYTES], title[SF_NAME_BYTES + 16];
+
+    sf_settings_recent(&view->settings, view->model.path);
+    stem_of(view->model.path, stem, sizeof stem);
+    snprintf(title, sizeof title, "sfumato - %s", stem);
+    sf_screen_title(view->screen, title);
+    snprintf(view->save_path, sizeof view->save_path, "%s-edited.json", stem);
+}
+
+void sf_view_open(struct sf_view *view, const char *path)
+{
+    if (sf_model_replace(&view->model, path))
+        return;
+    sf_rig_release(&view->rig);
+    sf_playback_init(&view->playback, view->model.info.fps);
+    view->playback.playing = true;
+    sf_view_opened(view);
+    view->dirty = true;
+}
+
+void sf_view_seek(struct sf_view *view, uint32_t frame)
+{
+    sf_playback_seek(&view->playback, frame);
+    view->dirty = true;
+}
+
+void sf_view_look(struct sf_view *view, const char *name)
+{
+    struct sf_looking *looking = &view->looking;
+
+    if (strcmp(looking->name, name) == 0)
+        return;
+    sf_looking_finish(looking);
+    *looking = (struct sf_looking){.automatic = true, .high = 1, .zoom = 1};
+    snprintf(looking->name, sizeof looking->name, "%s", name);
+    view->dirty = true;
+}
+
+void sf_view_shot(struct sf_view *view)
+{
+    view->shot = true;
+    view->settle = true;
+}
+
+void sf_view_record(struct sf_view *view)
+{
+    char stem[SF_NAME_BYTES];
+
+    if (sf_shots_recording(view->shots)) {
+        sf_view_note(view, SF_LOG_INFO, "recorded %u frames", sf_shots_recorded(view->shots));
+        sf_shots_stop(view->shots);
+    } else {
+        stem_of(view->model.path, stem, sizeof stem);
+        if (sf_shots_record(view->shots, stem))
+            return;
+        view->playback.playing = true;
+    }
+    view->dirty = true;
+}
+
+/* The camera as sets; how many. */
+static unsigned camera_sets(const struct sf_view *view, char sets[SF_RIG_SETS][SF_RIG_SET_BYTES],
+                            const char *pointers[SF_RIG_SETS])
+{
+    unsigned count = sf_rig_sets(&view->rig, sets);
+
+    for (unsigned i = 0; i < count; i++)
+        pointers[i] = sets[i];
+    return count;
+}
+
+void sf_view_save(struct sf_view *view, const char *path)
+{
+    char sets[SF_RIG_SETS][SF_RIG_SET_BYTES];
+    const char *pointers[SF_RIG_SETS];
+    unsigned count = camera_sets(view, sets, pointers);
+
+    /* Over a file that we have not written only when asked twice. */
+    if (strcmp(path, view->saved_path) != 0 && access(path, F_OK) == 0) {
+        snprintf(view->saved_path, sizeof view->saved_path, "%s", path);
+        sf_view_note(view, SF_LOG_WARNING, "%s exists: save again to replace it", path);
+        return;
+    }
+    if (!sf_model_save(&view->model, path, pointers, count)) {
+        snprintf(view->saved_path, sizeof view->saved_path, "%s", path);
+        sf_view_note(view, SF_LOG_INFO, "wrote %s", path);
+    }
+}
+
+void sf_view_copy_command(struct sf_view *view)
+{
+    char sets[SF_RIG_SETS][SF_RIG_SET_BYTES];
+    const char *pointers[SF_RIG_SETS];
+    unsigned count = camera_sets(view, sets, pointers);
+    char *command = sf_model_command(&view->model, view->playback.frame, view->options.width, view->options.height,
+                                     pointers, count);
+
+    if (!command)
+        return;
+    sf_screen_copy(view->screen, command);
+    sf_view_note(view, SF_LOG_INFO, "copied: %s", command);
+    free(command);
+}
+
+void sf_view_present_mode(struct sf_view *view, const char *mode)
+{
+    struct sf_window_options options = {.present_mode = mode};
+
+    sf_screen_size(view->screen, &options.width, &options.height);
+    if (!sf_window_set_options(view->window, &options))
+        snprintf(view->settings.present_mode, sizeof view->settings.present_mode, "%s", mode);
+    view->settle = true;
+}

@@ -1,0 +1,233 @@
+/* Every parameter of the table as a control: by group, found by a search, marked where it differs from the file. */
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "view.h"
+
+enum { TEXT_BYTES = 512 };
+static const double SLIDER_SPAN = 400; /* wider ranges are dragged, since a slider could not be set finely */
+static const float LABEL_SHARE = 0.42f;
+
+/* Case does not matter. */
+static bool contains(const char *text, const char *part)
+{
+    size_t length = strlen(part);
+
+    for (; *text; text++) {
+        size_t i = 0;
+
+        while (i < length && text[i] && tolower((unsigned char)text[i]) == tolower((unsigned char)part[i]))
+            i++;
+        if (i == length)
+            return true;
+    }
+    return length == 0;
+}
+
+static bool wanted(const struct sf_view *view, const struct sf_control *control)
+{
+    return contains(control->path, view->search) || contains(control->doc, view->search);
+}
+
+static void explain(const struct sf_control *control)
+{
+    char range[96] = "", usual[96] = "required";
+    const double *value = control->usual;
+
+    if (control->kind == SF_CONTROL_CHOICE)
+        range[0] = '\0';
+    else if (control->kind != SF_CONTROL_BOOL && control->numbers > 0)
+        snprintf(range, sizeof range, "%g to %g %s\n", control->min, control->max, control->unit);
+    if (control->required)
+        ;
+    else if (control->kind == SF_CONTROL_CHOICE)
+        snprintf(usual, sizeof usual, "%s", control->choices[(int)value[0]]);
+    else if (control->kind == SF_CONTROL_BOOL)
+        snprintf(usual, sizeof usual, "%s", value[0] != 0 ? "on" : "off");
+    else if (control->numbers == 0)
+        snprintf(usual, sizeof usual, "none");
+    else if (control->numbers == 1)
+        snprintf(usual, sizeof usual, "%g", value[0]);
+    else if (control->numbers == 2)
+        snprintf(usual, sizeof usual, "%g, %g", value[0], value[1]);
+    else
+        snprintf(usual, sizeof usual, "%g, %g, %g", value[0], value[1], value[2]);
+    sf_ui_tooltip("%s\n\n%susual: %s\n--set %s%s%s", control->doc, range, usual, control->path,
+                  control->renews[0] ? "\nrenews: " : "", control->renews);
+}
+
+/* A change of a px: about a hundredth of the value, never nothing. */
+static float drag_speed(const struct sf_control *control)
+{
+    double size = 0;
+
+    for (uint32_t i = 0; i < control->numbers; i++)
+        size = fmax(size, fabs(control->value[i]));
+    return (float)fmax(size, fmin(1, (control->max - control->min) * 0.01)) * 0.01f;
+}
+
+static bool edit_number(struct sf_control *control, const char *format)
+{
+    bool narrow = control->max - control->min <= SLIDER_SPAN, changed;
+    float value = (float)control->value[0];
+
+    if (control->kind == SF_CONTROL_INT && control->max - control->min < 1e6 && control->min >= 0) {
+        int whole = (int)control->value[0];
+
+        changed = sf_ui_slider_int("##value", &whole, (int)control->min, (int)control->max, !narrow);
+        control->value[0] = whole;
+        return changed;
+    }
+    if (narrow)
+        changed = sf_ui_slider("##value", &value, (float)control->min, (float)control->max, format, false);
+    else
+        changed = sf_ui_drag("##value", &value, 1, drag_speed(control), (float)control->min, (float)control->max,
+                             format);
+    control->value[0] = control->kind == SF_CONTROL_INT ? (double)lrint((double)value) : (double)value;
+    return changed;
+}
+
+static bool edit_numbers(struct sf_control *control)
+{
+    float values[3];
+    bool changed;
+
+    for (uint32_t i = 0; i < control->numbers; i++)
+        values[i] = (float)control->value[i];
+    if (control->kind == SF_CONTROL_COLOR)
+        changed = sf_ui_color("##value", values, control->max > 1);
+    else
+        changed = sf_ui_drag("##value", values, control->numbers, drag_speed(control), (float)control->min,
+                             (float)control->max, "%.4g");
+    if (control->kind == SF_CONTROL_RANGE && values[0] > values[1]) { /* the one that was moved takes the other along */
+        if (values[0] != (float)control->value[0])
+            values[1] = values[0];
+        else
+            values[0] = values[1];
+    }
+    for (uint32_t i = 0; i < control->numbers; i++)
+        control->value[i] = (double)values[i];
+    return changed;
+}
+
+/* The control itself, over a copy; true when the copy's value is to become the scene's. */
+static bool edit(struct sf_control *control, char text[TEXT_BYTES])
+{
+    bool flag = control->value[0] != 0;
+    int choice = (int)control->value[0];
+    char format[32];
+    bool changed;
+
+    switch (control->kind) {
+    case SF_CONTROL_BOOL:
+        changed = sf_ui_checkbox("##value", &flag);
+        control->value[0] = flag;
+        return changed;
+    case SF_CONTROL_CHOICE:
+        changed = sf_ui_choice("##value", &choice, control->choices);
+        control->value[0] = choice;
+        return changed;
+    case SF_CONTROL_INT:
+    case SF_CONTROL_FLOAT:
+        /* Units of several kinds of object ("W/m2, W/sr") are left to the tooltip. */
+        snprintf(format, sizeof format, strchr(control->unit, ',') ? "%%.4g" : "%%.4g %s", control->unit);
+        return edit_number(control, format);
+    case SF_CONTROL_TEXT:
+        snprintf(text, TEXT_BYTES, "%s", control->text ? control->text : "");
+        changed = sf_ui_input("##value", "none", text, TEXT_BYTES);
+        control->text = text;
+        return changed && text[0];
+    default:
+        return edit_numbers(control);
+    }
+}
+
+static void draw_control(struct sf_view *view, const struct sf_control *control)
+{
+    bool changed = sf_model_changed(&view->model, control->path), apply;
+    float room = sf_ui_room(), rectangle[4];
+    struct sf_control copy = *control;
+    char text[TEXT_BYTES], *assignment;
+
+    sf_ui_id_push(control->path);
+    if (changed)
+        sf_ui_text_color(sf_ui_accent, "%s", control->key);
+    else
+        sf_ui_text("%s", control->key);
+    explain(control);
+    sf_ui_same_line(room * LABEL_SHARE);
+    sf_ui_width(changed ? -sf_ui_line() * 1.2f : -1);
+    apply = edit(&copy, text);
+    explain(control);
+    sf_ui_last_rectangle(rectangle);
+    if (view->arguments->verbose > 1 && view->search[0] && !view->said_place) {
+        sf_view_note(view, SF_LOG_DEBUG, "control %s %.0f %.0f %.0f %.0f", control->path, (double)rectangle[0],
+                     (double)rectangle[1], (double)rectangle[2], (double)rectangle[3]);
+        view->said_place = true;
+    }
+    if (changed) {
+        sf_ui_same_line(0);
+        if (sf_ui_small_button("x"))
+            sf_view_reset(view, control->path);
+        sf_ui_tooltip("as in the file");
+    }
+    sf_ui_id_pop();
+    if (!apply)
+        return;
+    assignment = sf_control_print(&copy);
+    if (assignment)
+        sf_view_set(view, assignment);
+    free(assignment);
+}
+
+/* "lights.0" of "lights.0.color": the group's section; the first word alone for objects within groups. */
+static size_t section_of(const struct sf_control *control, char *name, size_t room)
+{
+    snprintf(name, room, "%s", control->group[0] ? control->group : "scene");
+    return strlen(name);
+}
+
+static void draw_controls(struct sf_view *view)
+{
+    char section[SF_NAME_BYTES] = "", name[SF_NAME_BYTES + 8];
+    bool open = false, searching = view->search[0] != '\0';
+
+    /* A change makes the array anew: nothing of it is used after one, in this turn. */
+    for (uint32_t i = 0; i < view->model.control_count; i++) {
+        const struct sf_control *controls = view->model.controls, *control = &controls[i];
+
+        if (!wanted(view, control))
+            continue;
+        section_of(control, name, SF_NAME_BYTES);
+        if (strcmp(name, section) != 0) {
+            snprintf(section, sizeof section, "%.*s", SF_NAME_BYTES - 1, name);
+            /* Opened by a search; closed again after it, since the names differ. */
+            snprintf(name, sizeof name, "%s##%s", section, searching ? "found" : "all");
+            open = sf_ui_section(name, searching || strcmp(section, "thick") == 0 || strcmp(section, "medium") == 0);
+        }
+        if (open)
+            draw_control(view, control);
+        if (view->model.controls != controls)
+            break;
+    }
+}
+
+void sf_panel_parameters(struct sf_view *view)
+{
+    sf_ui_width(-8 * sf_ui_line() / 2);
+    if (sf_ui_search("##search", "search (Ctrl+F)", view->search, sizeof view->search, view->focus_search))
+        view->said_place = false;
+    view->focus_search = false;
+    sf_ui_same_line(0);
+    sf_ui_disable(view->model.set_count == 0);
+    if (sf_ui_button("reset all"))
+        sf_view_reset(view, NULL);
+    sf_ui_enable();
+    sf_ui_tooltip("every parameter as in the file (Ctrl+Z)");
+    if (sf_ui_child_begin("controls", 0))
+        draw_controls(view);
+    sf_ui_child_end();
+}

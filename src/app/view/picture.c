@@ -1,0 +1,350 @@
+/* The renderer of the view: what it draws, when, and what comes back. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../console.h"
+#include "view.h"
+
+static const uint64_t SEEK_NS = 40 * 1000000ull; /* of a long way, until the window answers again */
+static const float NS_TO_MS = 1e-6f;
+
+/* ---- frames that are on their way ---- */
+
+bool sf_picture_pending(const struct sf_view *view)
+{
+    return view->flight_count > 0;
+}
+
+/* Takes up the oldest. */
+static enum sf_status land(struct sf_view *view)
+{
+    struct sf_flight flight = view->flights[0];
+    const struct sf_pass_timing *timings;
+    struct sf_frame frame;
+    uint32_t count = 0;
+    uint64_t now;
+    enum sf_status status;
+
+    view->flight_count--;
+    memmove(&view->flights[0], &view->flights[1], view->flight_count * sizeof flight);
+    status = sf_renderer_wait(view->renderer, flight.ticket, &frame);
+    if (!status)
+        status = sf_renderer_timings(view->renderer, flight.ticket, &timings, &count);
+    if (status)
+        return status;
+    now = sf_now_ns();
+    view->live = frame.live;
+    view->dropped = frame.dropped;
+    memcpy(view->bounds_min, frame.bounds_min, sizeof view->bounds_min);
+    memcpy(view->bounds_max, frame.bounds_max, sizeof view->bounds_max);
+    view->settle = true;
+    sf_stats_add(&view->stats, timings, count, flight.cpu_ms,
+                 view->landed_ns ? (float)(now - view->landed_ns) * NS_TO_MS : 0, flight.record_ms);
+    view->landed_ns = now;
+    if (view->looking.name[0])
+        sf_looking_take(&view->looking, &frame);
+    if (sf_shots_recording(view->shots) && view->options.returned)
+        return sf_picture_store(view, &frame);
+    return SF_OK;
+}
+
+enum sf_status sf_picture_collect(struct sf_view *view, unsigned left)
+{
+    enum sf_status status = SF_OK;
+
+    while (view->flight_count > left && !status)
+        status = land(view);
+    return status;
+}
+
+enum sf_status sf_picture_store(struct sf_view *view, const struct sf_frame *frame)
+{
+    char stem[SF_NAME_BYTES];
+
+    sf_view_stem(view, stem, sizeof stem);
+    return sf_shots_take(view->shots, stem, frame, view->model.info.tone, view->model.info.exposure,
+                         view->model.info.fps, view->model.info.hash);
+}
+
+/* ---- the renderer as it should be ---- */
+
+static struct sf_renderer_options wanted_options(const struct sf_view *view)
+{
+    return (struct sf_renderer_options){.width = (uint32_t)view->picture[2],
+                                        .height = (uint32_t)view->picture[3],
+                                        .timing = true,
+                                        .frames_kept = SF_FLIGHT + 1,
+                                        .shown = true,
+                                        .returned = sf_shots_recording(view->shots),
+                                        .inspect = view->looking.name[0] ? view->looking.name : NULL};
+}
+
+static bool same_options(const struct sf_view *view, const struct sf_renderer_options *wanted)
+{
+    const struct sf_renderer_options *has = &view->options;
+
+    return wanted->width == has->width && wanted->height == has->height && wanted->returned == has->returned &&
+           strcmp(wanted->inspect ? wanted->inspect : "", view->inspected) == 0;
+}
+
+static enum sf_status set_options(struct sf_view *view, const struct sf_renderer_options *wanted)
+{
+    enum sf_status status = sf_picture_collect(view, 0);
+
+    if (status)
+        return status;
+    status = sf_renderer_set_options(view->renderer, wanted);
+    if (status)
+        return status;
+    view->options = *wanted;
+    view->options.inspect = NULL;
+    snprintf(view->inspected, sizeof view->inspected, "%s", wanted->inspect ? wanted->inspect : "");
+    view->graph_version++;
+    view->dirty = true;
+    return SF_OK;
+}
+
+/* A size that the device cannot take, or an image that another method does not have, is no reason to stop. */
+static enum sf_status update_options(struct sf_view *view)
+{
+    struct sf_renderer_options wanted = wanted_options(view);
+    enum sf_status status;
+
+    if (same_options(view, &wanted) || (view->refused[0] == wanted.width && view->refused[1] == wanted.height))
+        return SF_OK;
+    status = set_options(view, &wanted);
+    if (status == SF_ERROR_USAGE && wanted.inspect) {
+        sf_view_look(view, "");
+        return update_options(view);
+    }
+    if (status == SF_ERROR_USAGE || status == SF_ERROR_MEMORY) {
+        view->refused[0] = wanted.width;
+        view->refused[1] = wanted.height;
+        return SF_OK;
+    }
+    return status;
+}
+
+/* ---- scenes ---- */
+
+static void drop_coarse(struct sf_view *view)
+{
+    sf_scene_destroy(&view->coarse);
+    view->governor.level = 0;
+}
+
+static enum sf_status give_scene(struct sf_view *view, const struct sf_scene *scene)
+{
+    enum sf_status status = sf_picture_collect(view, 0);
+
+    if (!status)
+        status = sf_renderer_set_scene(view->renderer, scene);
+    if (status)
+        return status;
+    view->graph_version++;
+    view->dirty = true;
+    return SF_OK;
+}
+
+enum sf_status sf_picture_accept(void *user, const struct sf_scene *scene)
+{
+    struct sf_view *view = user;
+    struct sf_scene_info info;
+    enum sf_status status = view->renderer ? give_scene(view, scene) : SF_OK;
+
+    if (status)
+        return status;
+    drop_coarse(view);
+    sf_scene_describe(scene, &info);
+    view->playback.fps = info.fps;
+    return SF_OK;
+}
+
+/* The names of thick.resolution from the scene's own on: coarser ones follow. */
+static unsigned coarser(const struct sf_view *view)
+{
+    const struct sf_control *resolution = sf_model_control(&view->model, "thick.resolution");
+    unsigned count = 0;
+
+    if (!resolution || strcmp(view->model.info.method, "thick") != 0)
+        return 0;
+    while (resolution->choices[count])
+        count++;
+    return count - 1 - (unsigned)resolution->value[0];
+}
+
+/* The model's scene with smoke so many levels coarser. */
+static enum sf_status make_coarse(struct sf_view *view, unsigned level, struct sf_scene **scene)
+{
+    const struct sf_control *resolution = sf_model_control(&view->model, "thick.resolution");
+    const struct sf_model *model = &view->model;
+    const char **sets = malloc((model->set_count + 1) * sizeof *sets);
+    char set[SF_NAME_BYTES];
+    enum sf_status status;
+
+    if (!sets)
+        return SF_ERROR_MEMORY;
+    for (uint32_t i = 0; i < model->set_count; i++)
+        sets[i] = model->sets[i];
+    snprintf(set, sizeof set, "thick.resolution=%s", resolution->choices[(unsigned)resolution->value[0] + level]);
+    sets[model->set_count] = set;
+    status = sf_scene_parse(model->path, model->text, model->bytes, sets, model->set_count + 1, &view->log, scene);
+    free(sets);
+    return status;
+}
+
+/* Draws on with smoke at that level of coarseness. */
+static enum sf_status set_level(struct sf_view *view, unsigned level)
+{
+    struct sf_scene *scene = NULL;
+    enum sf_status status = level > 0 ? make_coarse(view, level, &scene) : SF_OK;
+
+    if (!status)
+        status = give_scene(view, level > 0 ? scene : view->model.scene);
+    if (status) {
+        sf_scene_destroy(&scene);
+        view->governor.level = view->coarse ? view->governor.level : 0;
+        return status;
+    }
+    sf_scene_destroy(&view->coarse);
+    view->coarse = scene;
+    view->governor.level = level;
+    return SF_OK;
+}
+
+static enum sf_status govern(struct sf_view *view)
+{
+    const struct sf_stats *stats = &view->stats;
+    unsigned newest = (stats->next + SF_STATS_FRAMES - 1) % SF_STATS_FRAMES, before = view->governor.level;
+    double cost = stats->frame_count ? (double)stats->gpu_ms[newest] + stats->cpu_ms[newest] : 0;
+
+    if (sf_shots_recording(view->shots) || view->looking.name[0]) {
+        view->moved = false;
+        return before ? set_level(view, 0) : SF_OK;
+    }
+    if (!sf_governor_update(&view->governor, sf_now_ns(), view->moved, cost, coarser(view)))
+        return SF_OK;
+    unsigned level = view->governor.level;
+    view->governor.level = before;
+    return set_level(view, level);
+}
+
+/* ---- drawing ---- */
+
+struct budget {
+    struct sf_view *view;
+    uint64_t until_ns;
+};
+
+static bool within_budget(void *user, uint64_t done, uint64_t total)
+{
+    struct budget *budget = user;
+
+    budget->view->seek_done = done;
+    budget->view->seek_total = total;
+    return sf_now_ns() < budget->until_ns;
+}
+
+/* Whether the simulation is at the frame now; else some of the way is done. */
+static enum sf_status go_to(struct sf_view *view, uint32_t frame, bool *there)
+{
+    struct budget budget = {view, sf_now_ns() + SEEK_NS};
+    enum sf_status status = sf_renderer_seek(view->renderer, frame, within_budget, &budget);
+
+    *there = !status;
+    if (!status)
+        view->seek_total = 0;
+    return status == SF_ERROR_INTERRUPTED ? SF_OK : status;
+}
+
+static void aim(struct sf_view *view)
+{
+    struct sf_camera_view scene, own;
+
+    sf_scene_view(view->model.scene, view->playback.frame / view->model.info.fps, &scene);
+    sf_rig_follow(&view->rig, &scene);
+    sf_rig_view(&view->rig, &own);
+    sf_renderer_set_view(view->renderer, view->rig.own ? &own : NULL);
+}
+
+static enum sf_status draw(struct sf_view *view, struct sf_flight *flight)
+{
+    uint64_t begin = sf_now_ns();
+    enum sf_status status;
+
+    aim(view);
+    *flight = (struct sf_flight){0};
+    status = sf_renderer_render(view->renderer, view->playback.frame, &flight->ticket);
+    flight->cpu_ms = (float)(sf_now_ns() - begin) * NS_TO_MS;
+    flight->record_ms = (float)sf_renderer_record_ns(view->renderer, NULL) * NS_TO_MS;
+    view->drawn_frame = view->playback.frame;
+    view->counted.pictures++;
+    return status;
+}
+
+/* As the scene says, at full quality, with everything back. */
+static enum sf_status shoot(struct sf_view *view)
+{
+    struct sf_renderer_options wanted = wanted_options(view);
+    struct sf_flight flight;
+    struct sf_frame frame;
+    enum sf_status status = view->governor.level ? set_level(view, 0) : SF_OK;
+
+    view->shot = false;
+    wanted.returned = true;
+    if (!status)
+        status = set_options(view, &wanted);
+    if (!status)
+        status = draw(view, &flight);
+    if (!status)
+        status = sf_renderer_wait(view->renderer, flight.ticket, &frame);
+    if (!status)
+        sf_picture_store(view, &frame);
+    wanted.returned = false;
+    return status ? status : set_options(view, &wanted);
+}
+
+enum sf_status sf_picture_update(struct sf_view *view, bool *drawn)
+{
+    bool there = true;
+    enum sf_status status = update_options(view);
+
+    *drawn = false;
+    if (!status)
+        status = govern(view);
+    if (status || !(view->dirty || view->shot || view->playback.frame != view->drawn_frame))
+        return status;
+    status = go_to(view, view->playback.frame, &there);
+    if (status || !there)
+        return status;
+    if (view->shot && !sf_shots_recording(view->shots))
+        return shoot(view);
+    status = sf_picture_collect(view, SF_FLIGHT - 1);
+    if (!status)
+        status = draw(view, &view->flights[view->flight_count]);
+    if (status)
+        return status;
+    view->flight_count++;
+    view->dirty = false;
+    view->moved = false;
+    *drawn = true;
+    return SF_OK;
+}
+
+enum sf_status sf_picture_open(struct sf_view *view)
+{
+    struct sf_renderer_options wanted = wanted_options(view);
+    enum sf_status status = sf_renderer_create(view->device, view->model.scene, &wanted, &view->log, &view->renderer);
+
+    view->options = wanted;
+    view->options.inspect = NULL;
+    view->dirty = true;
+    return status;
+}
+
+void sf_picture_close(struct sf_view *view)
+{
+    sf_renderer_destroy(&view->renderer);
+    sf_scene_destroy(&view->coarse);
+}

@@ -1,0 +1,183 @@
+/* The viewer's state, and what its files ask of each other. view.c owns the loop: input, time, panels, picture, window.
+ * Panels read the state and change it through the functions below, which mark what must be drawn again. */
+#ifndef SF_APP_VIEW_VIEW_H
+#define SF_APP_VIEW_VIEW_H
+
+#include <pthread.h>
+
+#include "../options.h"
+#include "governor.h"
+#include "lights.h"
+#include "model.h"
+#include "playback.h"
+#include "reload.h"
+#include "rig.h"
+#include "screen.h"
+#include "settings.h"
+#include "shots.h"
+#include "stats.h"
+#include "ui.h"
+
+enum { SF_NOTES = 6, SF_NOTE_BYTES = 512, SF_NAME_BYTES = 64, SF_FLIGHT = 2 };
+
+/* A message that stays in the picture's corner for a while: errors until they are clicked away. */
+struct sf_note {
+    enum sf_log_level level;
+    uint64_t born_ns;
+    char text[SF_NOTE_BYTES];
+};
+
+/* A picture that was queued. */
+struct sf_flight {
+    uint64_t ticket;
+    float cpu_ms;    /* to record and submit it */
+    float record_ms; /* of that: recording its passes */
+};
+
+/* The image of the graph that is looked at in place of the picture. */
+struct sf_looking {
+    char name[SF_NAME_BYTES]; /* "": the picture itself */
+    float *values;            /* [height][width][channels], a copy of the last frame's; NULL until it comes, or a buffer */
+    uint32_t width, height, channels;
+    uint32_t *words; /* of a buffer */
+    uint32_t word_count;
+    uint64_t version; /* counts copies */
+    bool automatic;   /* the range follows the values */
+    bool logarithmic;
+    int channel;    /* 0: all as colours; 1..4: that one as grey */
+    float low, high; /* the range that becomes 0..1; of the widest channel while it is automatic */
+    float ranges[3][2]; /* automatic: of the channels shown; */
+    uint64_t ranged;    /* and hash of what they were found from */
+    uint8_t *pixels; /* mapped, RGBA */
+    uint64_t mapped; /* hash of what pixels were mapped from */
+    float zoom, pan_x, pan_y; /* 1: fits the picture's place; pan in px */
+};
+
+/* What the mouse, pressed in the picture, is doing. */
+enum sf_hold { SF_HOLD_NONE, SF_HOLD_ORBIT, SF_HOLD_PAN, SF_HOLD_LOOK, SF_HOLD_LIGHT, SF_HOLD_LOOKED };
+
+/* For --report. */
+struct sf_view_count {
+    uint64_t begin_ns;
+    uint64_t loops, pictures, shown; /* shown: windows presented */
+    bool said;                       /* how long the first picture took */
+    uint64_t inputs;                 /* answered by a picture */
+    double input_ms_sum, input_ms_most;
+};
+
+struct sf_view {
+    const struct sf_arguments *arguments;
+    struct sf_log log; /* to the console, and into notes */
+    pthread_mutex_t notes_lock; /* the log may be written to by any thread */
+    struct sf_note notes[SF_NOTES]; /* newest last */
+    unsigned note_count;
+
+    struct sf_settings settings;
+    struct sf_screen *screen;
+    struct sf_ui *ui;
+    struct sf_device *device;
+    struct sf_window *window;
+    struct sf_model model;
+    struct sf_renderer *renderer;
+    struct sf_renderer_options options; /* as the renderer has them, but for `inspect` */
+    char inspected[SF_NAME_BYTES];      /* that */
+    uint32_t refused[2];                /* a size that could not be had */
+    struct sf_scene *coarse;            /* model's with coarser smoke, while governor.level is above 0 */
+    struct sf_rig rig;
+    struct sf_playback playback;
+    struct sf_governor governor;
+    struct sf_reload *reload; /* NULL: no sources, no compiler */
+    struct sf_shots *shots;
+    struct sf_stats stats;
+
+    struct sf_flight flights[SF_FLIGHT];
+    unsigned flight_count;
+    uint64_t landed_ns; /* when the last one was done; 0: pause */
+    uint32_t live, dropped;
+    float bounds_min[3], bounds_max[3];
+    uint32_t drawn_frame; /* of the newest picture */
+    uint64_t seek_done, seek_total; /* steps on a long way; total 0: none */
+
+    float picture[4];   /* px: x, y, width, height of the picture's place in the window */
+    bool panels, keys_shown, lights_shown;
+    bool dirty;   /* the picture must be drawn again */
+    bool settle;  /* the window must be drawn again, though the picture stays */
+    bool closing;
+    bool shot;    /* a screenshot is wanted */
+    struct sf_looking looking;
+    struct sf_graph_data *graph; /* graph_data.h; read off at graph->version; sf_graph_data_destroy at the end */
+    char look_search[SF_NAME_BYTES]; /* in the graph's resources */
+    int words_as;                    /* of a buffer: 0 what is likely, 1 float, 2 uint, 3 hex */
+    enum sf_hold hold;
+    int handle;     /* light's handle that is held, or -1 */
+    unsigned light; /* selected by keys */
+    bool moved;     /* the camera, since the last picture */
+    struct sf_view_count counted;
+    char search[SF_NAME_BYTES]; /* in the parameters */
+    bool focus_search;
+    bool said_place; /* where the first control found stands, for scripts that drive the mouse */
+    char save_path[512];
+    char saved_path[512]; /* that may be replaced without asking */
+    uint64_t graph_version; /* counts remade graphs: what was read off the old one is stale */
+    uint64_t input_ns;      /* when the input that this picture answers came; 0: none */
+};
+
+enum sf_status sf_view_run(const struct sf_arguments *arguments);
+
+/* ---- input.c: keys and the mouse in the picture, after the panels have been drawn ---- */
+void sf_input_take(struct sf_view *view, double seconds);
+/* Lights' handles over the picture. */
+void sf_input_draw_lights(struct sf_view *view);
+
+/* ---- picture.c: the renderer, and what comes back of it ---- */
+enum sf_status sf_picture_open(struct sf_view *view);
+void sf_picture_close(struct sf_view *view);
+/* The model's accept. */
+enum sf_status sf_picture_accept(void *user, const struct sf_scene *scene);
+/* Brings the renderer to what the view asks for (size, looked-at image, coarseness) and draws a picture when one is due.
+ * *drawn: it was queued. Not OK: the device is lost, or a defect. */
+enum sf_status sf_picture_update(struct sf_view *view, bool *drawn);
+/* Takes up pictures that are done: all but `left` of them are waited for. */
+enum sf_status sf_picture_collect(struct sf_view *view, unsigned left);
+/* Hands a frame that came back to the files' writer. */
+enum sf_status sf_picture_store(struct sf_view *view, const struct sf_frame *frame);
+/* Something of the picture is still on its way. */
+bool sf_picture_pending(const struct sf_view *view);
+
+/* ---- actions (actions.c); failures have been said through the log ---- */
+void sf_view_set(struct sf_view *view, const char *assignment);
+void sf_view_reset(struct sf_view *view, const char *path); /* NULL: everything */
+void sf_view_open(struct sf_view *view, const char *path);
+void sf_view_seek(struct sf_view *view, uint32_t frame);
+void sf_view_look(struct sf_view *view, const char *name); /* an image or buffer of the graph; "": the picture */
+void sf_view_shot(struct sf_view *view);
+void sf_view_record(struct sf_view *view); /* begins or ends */
+void sf_view_save(struct sf_view *view, const char *path);
+void sf_view_copy_command(struct sf_view *view); /* to the clipboard */
+void sf_view_present_mode(struct sf_view *view, const char *mode);
+/* After another scene is in place: title, recent list. */
+void sf_view_opened(struct sf_view *view);
+/* Its name without folder and ending. */
+void sf_view_stem(const struct sf_view *view, char *stem, size_t room);
+void sf_view_note(struct sf_view *view, enum sf_log_level level, const char *format, ...);
+
+/* ---- panels: drawn inside of the side panel's tabs, but for the last four ---- */
+void sf_panel_parameters(struct sf_view *view); /* panel_parameters.c */
+void sf_panel_scene(struct sf_view *view);      /* panel_scene.c: scene, method, files, camera, lights, window */
+void sf_panel_look(struct sf_view *view);       /* panel_look.c: resources of the graph */
+void sf_panel_graph(struct sf_view *view);      /* panel_graph.c: the graph as a drawing */
+void sf_panel_times(struct sf_view *view);      /* panel_times.c */
+void sf_panel_looked(struct sf_view *view);     /* panel_look.c: read-out over the picture, zoom and pan */
+void sf_panel_bar(struct sf_view *view, float x, float y, float width, float height); /* panel_bar.c: time */
+void sf_panel_notes(struct sf_view *view);                                            /* panel_bar.c */
+void sf_panel_keys(struct sf_view *view);                                             /* panel_bar.c */
+
+/* looking.c: the looked-at image as RGBA pixels for sf_window_show, as large as the picture's place in px with zoom and pan
+ * in them; mapped anew when something changed. NULL: show the picture. */
+const uint8_t *sf_looking_pixels(struct sf_looking *looking, uint32_t place_width, uint32_t place_height, uint32_t *width,
+                                 uint32_t *height);
+/* Takes over what came back with a frame. */
+void sf_looking_take(struct sf_looking *looking, const struct sf_frame *frame);
+void sf_looking_finish(struct sf_looking *looking);
+
+#endif

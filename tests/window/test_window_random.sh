@@ -1,0 +1,50 @@
+#!/bin/sh
+# 2,000 pictures of random input and sizes: memory stays flat, and nothing breaks.
+. "$SF_SOURCE_ROOT/tests/window/lib.sh"
+scene=$SF_SOURCE_ROOT/scenes/tiny/all.json
+[ -n "${SEED:-}" ] || SEED=7
+
+"$SFUMATO" view --validate -v --report report.json "$scene" -s 300x220 --present-mode immediate --exit-after 2200 >out 2>err &
+view=$!
+until_true 30 xdotool search --onlyvisible --class '^sfumato$' || { fail "no window"; cat err; }
+window=$(xdotool search --onlyvisible --class '^sfumato$' | tail -n 1)
+xdotool windowactivate --sync "$window" 2>/dev/null
+resident() { awk '/^VmRSS/ { print $2 }' "/proc/$view/status" 2>/dev/null; }
+
+# Deterministic input: awk writes a script for xdotool in rounds of forty.
+turn=0
+start_kib=
+while kill -0 "$view" 2>/dev/null && [ $turn -lt 400 ]; do
+    awk -v seed="$((SEED + turn))" -v window="$window" 'BEGIN {
+        srand(seed)
+        split("space period comma Tab f c l o Home bracketleft bracketright question Escape shift+1 shift+5 ctrl+1 1 Left Up p ctrl+z slash Escape", keys)
+        for (i = 0; i < 12; i++) {
+            what = int(rand() * 6)
+            x = int(rand() * 300); y = int(rand() * 220)
+            if (what == 0) print "windowsize " window " " 1 + int(rand() * 420) " " 1 + int(rand() * 320)
+            else if (what == 1) print "key " keys[1 + int(rand() * 23)]
+            else if (what == 2) print "mousemove --window " window " " x " " y " mousedown 1 mousemove_relative -- " int(rand() * 80 - 40) " " int(rand() * 80 - 40) " mouseup 1"
+            else if (what == 3) print "mousemove --window " window " " x " " y " click 4"
+            else if (what == 4) print "mousemove --window " window " " x " " y " mousedown 3 mousemove_relative -- " int(rand() * 40 - 20) " 5 mouseup 3"
+            else print "mousemove --window " window " " x " " y " click 5"
+        }
+    }' >input
+    while read -r line; do
+        # shellcheck disable=SC2086
+        xdotool $line 2>/dev/null
+    done <input
+    turn=$((turn + 1))
+    [ $turn -ne 8 ] || start_kib=$(resident)
+    now=$(resident)
+    [ -z "$now" ] || end_kib=$now
+done
+until_true 120 gone || { fail "does not come to its end"; kill -9 "$view"; }
+wait "$view"
+code=$?
+view=
+[ "$code" -eq 0 ] || { fail "exit code $code"; tail -n 20 err; }
+! grep -q 'validation' err || { fail "the validation layers speak"; grep -m 5 validation err; }
+[ "$(figure shown)" -ge 2000 ] || fail "shown only $(figure shown) times"
+echo "resident ${start_kib:-?} KiB after the first rounds, ${end_kib:-?} KiB at the end; $(figure pictures) pictures, $(figure remade) swapchains, $turn rounds"
+[ -n "$start_kib" ] && [ $((end_kib - start_kib)) -lt 40000 ] || fail "memory grew from ${start_kib:-?} to ${end_kib:-?} KiB"
+done_testing
