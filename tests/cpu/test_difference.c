@@ -512,7 +512,11 @@ static void seek_rows(const char *path, const struct sf_param_group *group)
 
 static void test_every_row_has_the_bits_that_it_needs(void **state)
 {
-    static const char *const scenes[] = {"all", "mesh", "latlong", "cube", "sphere", "list-csv", "list-ply"};
+    /* Scenes with pictures or larger meshes take long to load: only what they alone have is tried. */
+    static const struct {
+        const char *name, *part;
+    } scenes[] = {{"all", ""},      {"mesh", "objects"}, {"latlong", "environment"}, {"cube", "camera"}, {"sphere", ""},
+                  {"list-csv", ""}, {"list-ply", ""}};
 
     (void)state;
     write_panorama();
@@ -522,13 +526,14 @@ static void test_every_row_has_the_bits_that_it_needs(void **state)
         struct controls controls;
         struct trace trace;
 
-        snprintf(relative, sizeof relative, "scenes/tiny/%s.json", scenes[i]);
+        snprintf(relative, sizeof relative, "scenes/tiny/%s.json", scenes[i].name);
         snprintf(path, sizeof path, "%s", source_path(relative));
         scene = load_with(path, NULL, 0);
         trace = trace_of(scene);
         controls = controls_of(scene);
         for (uint32_t k = 0; k < controls.count; k++)
-            try_control(path, scene, &trace, &controls.list[k]);
+            if (strncmp(controls.list[k].path, scenes[i].part, strlen(scenes[i].part)) == 0)
+                try_control(path, scene, &trace, &controls.list[k]);
         free(controls.list);
         sf_scene_destroy(&scene);
     }

@@ -319,19 +319,21 @@ static uint64_t memory_used(void)
     return used;
 }
 
-/* A device of little memory takes it in small blocks, so that what is left behind shows. */
+/* A device of little memory takes it in small blocks, so that what is left behind shows. Blocks that are there for a
+ * hole's sake may stay as long as the renderer lives, and no longer. */
 static void test_memory(void **state)
 {
     static const char *const sets[] = {
         NULL,          "thick.light_size=100",  "sim.capacity=3000",         "shadow.map_size=200",
         "method=none", "thick.resolution=full", "lights.0.direction=1,-1,1", "environment.visible=false",
         "sim.seed=3",  "medium.g=0.1"};
+    enum { HOLES = 2 };
     static const char *const looked[] = {NULL, "color", "counts", "objects", "particles"};
     const struct sf_device_options limited = {.validate = true, .no_cache = true, .budget_bytes = 24 << 20};
     struct sf_device *usual = live_device;
     struct sf_scene *scenes[2 * SF_COUNT(sets)];
     struct sf_renderer *renderer;
-    uint64_t used;
+    uint64_t used = 0, idle = 0;
     uint32_t random = 1;
 
     (void)state;
@@ -340,9 +342,15 @@ static void test_memory(void **state)
         scenes[2 * i + 1] = live_parse(live_lists, i == 6 ? NULL : sets[i]);
     }
     assert_int_equal(sf_device_create(&limited, &live_log, &live_device), SF_OK);
-    renderer = live_create(scenes[0], &plain);
-    live_frame(renderer, 3);
-    used = memory_used();
+    for (int i = 0; i < 2; i++) { /* the device's own, for frames in flight, is taken by the first of all */
+        renderer = live_create(scenes[0], &plain);
+        live_frame(renderer, 3);
+        live_frame(renderer, 4);
+        used = memory_used();
+        if (i == 0)
+            sf_renderer_destroy(&renderer);
+        idle = i == 0 ? memory_used() : idle;
+    }
     for (int i = 0; i < 200; i++) {
         random = random * 1664525u + 1013904223u;
         if (random >> 31) {
@@ -364,10 +372,13 @@ static void test_memory(void **state)
     assert_int_equal(sf_renderer_set_options(renderer, &plain), SF_OK);
     assert_int_equal(sf_renderer_set_scene(renderer, scenes[0]), SF_OK);
     live_compare(renderer, scenes[0], &plain, 3, "after 200 changes");
-    if (memory_used() != used)
+    if (memory_used() > used + HOLES * (limited.budget_bytes / 8))
         fail_msg("%llu bytes are used after 200 changes, %llu before", (unsigned long long)memory_used(),
                  (unsigned long long)used);
     sf_renderer_destroy(&renderer);
+    if (memory_used() != idle)
+        fail_msg("%llu bytes are left of 200 changes, %llu of one", (unsigned long long)memory_used(),
+                 (unsigned long long)idle);
     assert_int_equal(sf_device_validation_messages(live_device), 0);
     live_errors = 0;
     sf_device_destroy(&live_device);

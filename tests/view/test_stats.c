@@ -150,6 +150,8 @@ static void passes_stand_in_the_order_of_the_last_frame(void **state)
     add_frame("x", 3);
     assert_int_equal(stats.passes[0].count, 1);
     assert_true(near(stats.passes[0].median, 3));
+    add_frame("abcx", 1);
+    assert_order("abcx");
 }
 
 static void many_passes_and_long_names_are_kept_within_bounds(void **state)

@@ -19,6 +19,7 @@ DISPLAY=:$(cat display)
 export DISPLAY
 openbox >/dev/null 2>&1 &
 wm=$!
+sleep 0.5 # it holds the server while it takes the screen over
 XDG_CONFIG_HOME=$work/config
 export XDG_CONFIG_HOME
 view=
@@ -42,13 +43,18 @@ until_true() {
     done
 }
 
+# Sets $window. xdotool can wait for ever on a server that somebody holds: each try has its limit.
+find_window() {
+    until_true 30 timeout 2 xdotool search --onlyvisible --class '^sfumato$' || { fail "no window"; cat err; exit 1; }
+    window=$(timeout 2 xdotool search --onlyvisible --class '^sfumato$' | tail -n 1)
+    timeout 5 xdotool windowactivate --sync "$window" 2>/dev/null
+}
+
 # start ARGUMENTS...: a viewer with validation on; $view its process, $window its window; err what it says.
 start() {
     "$SFUMATO" view --validate -v --report report.json "$@" >out 2>err &
     view=$!
-    until_true 30 xdotool search --onlyvisible --class '^sfumato$' || { fail "no window"; cat err; return; }
-    window=$(xdotool search --onlyvisible --class '^sfumato$' | tail -n 1)
-    xdotool windowactivate --sync "$window" 2>/dev/null
+    find_window
     until_true 60 said 'the first picture' || { fail "no picture"; cat err; }
     steady
 }

@@ -6,9 +6,7 @@ scene=$SF_SOURCE_ROOT/scenes/tiny/all.json
 
 "$SFUMATO" view --validate -v --report report.json "$scene" -s 300x220 --present-mode immediate --exit-after 2200 >out 2>err &
 view=$!
-until_true 30 xdotool search --onlyvisible --class '^sfumato$' || { fail "no window"; cat err; }
-window=$(xdotool search --onlyvisible --class '^sfumato$' | tail -n 1)
-xdotool windowactivate --sync "$window" 2>/dev/null
+find_window
 resident() { awk '/^VmRSS/ { print $2 }' "/proc/$view/status" 2>/dev/null; }
 
 # Deterministic input: awk writes a script for xdotool in rounds of forty.
@@ -31,7 +29,7 @@ while kill -0 "$view" 2>/dev/null && [ $turn -lt 400 ]; do
     }' >input
     while read -r line; do
         # shellcheck disable=SC2086
-        xdotool $line 2>/dev/null
+        timeout 5 xdotool $line 2>/dev/null
     done <input
     turn=$((turn + 1))
     [ $turn -ne 8 ] || start_kib=$(resident)

@@ -155,7 +155,9 @@ void sf_view_present_mode(struct sf_view *view, const char *mode)
     struct sf_window_options options = {.present_mode = mode};
 
     sf_screen_size(view->screen, &options.width, &options.height);
-    if (!sf_window_set_options(view->window, &options))
+    if (!sf_window_set_options(view->window, &options)) {
         snprintf(view->settings.present_mode, sizeof view->settings.present_mode, "%s", mode);
+        snprintf(view->remembered_mode, sizeof view->remembered_mode, "%s", mode);
+    }
     view->settle = true;
 }

@@ -10,7 +10,7 @@
 #include "../console.h"
 #include "view.h"
 
-static const float REACH = 12; /* px at scale 1: how near a light's handle must be */
+static const float REACH = 12;    /* px at scale 1: how near a light's handle must be */
 static const double KEY_TURN = 3; /* deg a press */
 
 static bool in_picture(const struct sf_view *view, float x, float y)
@@ -65,7 +65,7 @@ static void drag_light(struct sf_view *view, float x, float y)
     set_light(view, sets,
               sf_handle_drag(&handles[view->handle], view->model.controls, view->model.control_count, &eye,
                              view->picture[2], view->picture[3], x - view->picture[0], y - view->picture[1],
-                             (sf_screen_mods(view->screen) & GLFW_MOD_SHIFT) != 0, sets));
+                             view->handle_far != ((sf_screen_mods(view->screen) & GLFW_MOD_SHIFT) != 0), sets));
 }
 
 static void orbit_light(struct sf_view *view, double turn, double rise)
@@ -128,10 +128,11 @@ static enum sf_hold press(struct sf_view *view, int button, float x, float y)
         struct sf_handle handles[SF_HANDLES_MAX];
         unsigned count = find_handles(view, handles);
 
-        view->handle = sf_handles_pick(handles, count, x - view->picture[0], y - view->picture[1],
-                                       REACH * sf_ui_scale());
+        view->handle =
+            sf_handles_pick(handles, count, x - view->picture[0], y - view->picture[1], REACH * sf_ui_scale());
         if (view->handle >= 0) {
             view->light = handles[view->handle].light;
+            view->handle_far = handles[view->handle].far;
             return SF_HOLD_LIGHT;
         }
     }
@@ -190,6 +191,12 @@ static void fly(struct sf_view *view, double seconds)
 
 /* ---- keys ---- */
 
+static void search(struct sf_view *view)
+{
+    view->panels = view->focus_search = true;
+    view->tab = 0;
+}
+
 static void control_key(struct sf_view *view, int key)
 {
     if (key >= GLFW_KEY_1 && key <= GLFW_KEY_9) {
@@ -201,7 +208,7 @@ static void control_key(struct sf_view *view, int key)
     }
     switch (key) {
     case GLFW_KEY_F:
-        view->panels = view->focus_search = true;
+        search(view);
         break;
     case GLFW_KEY_C:
         sf_view_copy_command(view);
@@ -336,7 +343,7 @@ static void plain_key(struct sf_view *view, int key, int mods)
         if (mods & GLFW_MOD_SHIFT)
             view->keys_shown = !view->keys_shown;
         else
-            view->panels = view->focus_search = true;
+            search(view);
         break;
     case GLFW_KEY_F1:
         view->keys_shown = !view->keys_shown;
@@ -344,6 +351,10 @@ static void plain_key(struct sf_view *view, int key, int mods)
     default:
         if (key >= GLFW_KEY_1 && key <= GLFW_KEY_9)
             digit(view, key, mods);
+        if (key >= GLFW_KEY_F2 && key < GLFW_KEY_F2 + SF_TABS) {
+            view->tab = key - GLFW_KEY_F2;
+            view->panels = true;
+        }
         break;
     }
 }

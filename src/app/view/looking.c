@@ -16,7 +16,7 @@ static const float WIDE = 16;     /* greatest over least: from here on logarithm
 static const float ALIKE = 8;     /* greatest values of channels that belong together */
 static const float LEAST = 1e-6f; /* of the greatest value: where logarithms begin beside zeros */
 static const uint8_t OUTSIDE[3] = {20, 21, 23}, NOTHING[3] = {24, 29, 40};
-static const uint8_t UNWRITTEN[2][3] = {{74, 10, 68}, {116, 20, 108}};
+static const uint8_t UNWRITTEN[2][3] = {{56, 11, 53}, {78, 17, 74}};
 
 /* ---- place ---- */
 
@@ -100,6 +100,17 @@ void sf_looking_fit(struct sf_looking *looking)
 {
     looking->zoom = 1;
     looking->pan_x = looking->pan_y = 0;
+}
+
+static const uint64_t HASH_BEGIN = 0xcbf29ce484222325u; /* FNV-1a */
+
+static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t count)
+{
+    const uint8_t *byte = bytes;
+
+    for (size_t i = 0; i < count; i++)
+        hash = (hash ^ byte[i]) * 0x100000001b3u;
+    return hash;
 }
 
 /* ---- ranges ---- */
@@ -198,6 +209,18 @@ static void find_ranges(struct sf_looking *looking)
         looking->low = fminf(looking->low, looking->ranges[c][0]);
         looking->high = fmaxf(looking->high, looking->ranges[c][1]);
     }
+}
+
+/* When something that they follow from has changed. */
+static void update_ranges(struct sf_looking *looking)
+{
+    const uint64_t whole[] = {looking->version, looking->logarithmic, (uint64_t)looking->channel};
+    uint64_t hash = hash_bytes(HASH_BEGIN, whole, sizeof whole) | 1; /* 0: never found */
+
+    if (!looking->automatic || looking->ranged == hash)
+        return;
+    find_ranges(looking);
+    looking->ranged = hash;
 }
 
 /* ---- colours ---- */
@@ -336,15 +359,6 @@ static void paint(struct painter *painter, uint32_t height, uint8_t *pixels)
     }
 }
 
-static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t count)
-{
-    const uint8_t *byte = bytes;
-
-    for (size_t i = 0; i < count; i++)
-        hash = (hash ^ byte[i]) * 0x100000001b3u; /* FNV-1a */
-    return hash;
-}
-
 /* Of all that the pixels follow from. */
 static uint64_t hash_of(const struct sf_looking *looking, uint32_t width, uint32_t height)
 {
@@ -352,17 +366,9 @@ static uint64_t hash_of(const struct sf_looking *looking, uint32_t width, uint32
         looking->version, looking->automatic, looking->logarithmic, (uint64_t)looking->channel, width, height};
     const float parts[] = {looking->automatic ? 0 : looking->low, looking->automatic ? 0 : looking->high,
                            zoom_of(looking), looking->pan_x, looking->pan_y};
-    uint64_t hash = hash_bytes(0xcbf29ce484222325u, whole, sizeof whole);
+    uint64_t hash = hash_bytes(HASH_BEGIN, whole, sizeof whole);
 
     return hash_bytes(hash, parts, sizeof parts) | 1; /* 0: never mapped */
-}
-
-/* Of what the ranges follow from. */
-static uint64_t range_hash(const struct sf_looking *looking)
-{
-    const uint64_t whole[] = {looking->version, looking->logarithmic, (uint64_t)looking->channel};
-
-    return hash_bytes(0xcbf29ce484222325u, whole, sizeof whole) | 1;
 }
 
 static bool remap(struct sf_looking *looking, uint32_t width, uint32_t height)
@@ -375,10 +381,7 @@ static bool remap(struct sf_looking *looking, uint32_t width, uint32_t height)
 
     looking->pixels = pixels ? pixels : looking->pixels;
     if (pixels && columns) {
-        if (looking->automatic && looking->ranged != range_hash(looking)) {
-            find_ranges(looking);
-            looking->ranged = range_hash(looking);
-        }
+        update_ranges(looking);
         for (uint32_t x = 0; x < width; x++)
             columns[x] = texel_at((float)x + 0.5f, origin, scale, looking->width);
         painter.columns = columns;
@@ -448,6 +451,8 @@ void sf_looking_take(struct sf_looking *looking, const struct sf_frame *frame)
     looking->channels = values ? frame->inspected_channels : 0;
     if (looking->version++ == 0 && values && looking->automatic)
         looking->logarithmic = wants_logarithms(looking);
+    if (values)
+        update_ranges(looking); /* the panels say them before the pixels are made */
 }
 
 void sf_looking_finish(struct sf_looking *looking)

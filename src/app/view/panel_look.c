@@ -253,8 +253,10 @@ static void draw_buffer(struct sf_view *view)
 {
     static const char *const kinds[] = {"likely", "float", "uint", "hex", NULL};
 
-    sf_ui_width(sf_ui_room() * 0.3f);
-    sf_ui_choice("words as", &view->words_as, kinds);
+    sf_ui_text("words as");
+    sf_ui_same_line(0);
+    sf_ui_width(sf_ui_room() * 0.45f);
+    sf_ui_choice("##words", &view->words_as, kinds);
     sf_ui_tooltip("Likely: as a float when that gives a usual number, else as a whole one. Left of each row stands its "
                   "offset in bytes; at most the first 64 KiB are here.");
     draw_words(view);

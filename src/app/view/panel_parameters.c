@@ -84,8 +84,8 @@ static bool edit_number(struct sf_control *control, const char *format)
     if (narrow)
         changed = sf_ui_slider("##value", &value, (float)control->min, (float)control->max, format, false);
     else
-        changed = sf_ui_drag("##value", &value, 1, drag_speed(control), (float)control->min, (float)control->max,
-                             format);
+        changed =
+            sf_ui_drag("##value", &value, 1, drag_speed(control), (float)control->min, (float)control->max, format);
     control->value[0] = control->kind == SF_CONTROL_INT ? (double)lrint((double)value) : (double)value;
     return changed;
 }

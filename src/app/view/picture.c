@@ -339,6 +339,7 @@ enum sf_status sf_picture_open(struct sf_view *view)
 
     view->options = wanted;
     view->options.inspect = NULL;
+    snprintf(view->inspected, sizeof view->inspected, "%s", view->looking.name);
     view->dirty = true;
     return status;
 }

@@ -71,22 +71,23 @@ static void draw_tabs(struct sf_view *view)
     static const struct {
         const char *name;
         void (*draw)(struct sf_view *view);
-    } tabs[] = {{"Parameters", sf_panel_parameters},
-                {"Scene", sf_panel_scene},
-                {"Images", sf_panel_look},
-                {"Graph", sf_panel_graph},
-                {"Times", sf_panel_times}};
+    } tabs[SF_TABS] = {{"Parameters", sf_panel_parameters},
+                       {"Scene", sf_panel_scene},
+                       {"Images", sf_panel_look},
+                       {"Graph", sf_panel_graph},
+                       {"Times", sf_panel_times}};
 
     if (!sf_ui_tabs_begin("tabs"))
         return;
-    for (size_t i = 0; i < sizeof tabs / sizeof tabs[0]; i++) {
-        if (view->focus_search && i == 0)
+    for (int i = 0; i < SF_TABS; i++) {
+        if (i == view->tab)
             sf_ui_tab_choose(tabs[i].name);
         if (!sf_ui_tab_begin(tabs[i].name))
             continue;
         tabs[i].draw(view);
         sf_ui_tab_end();
     }
+    view->tab = -1;
     sf_ui_tabs_end();
 }
 
@@ -295,17 +296,16 @@ static void take_settings(struct sf_view *view)
     struct sf_settings *settings = &view->settings;
 
     sf_settings_load(settings);
+    snprintf(view->remembered_mode, sizeof view->remembered_mode, "%s", settings->present_mode);
     if (arguments->size.width > 0) {
         settings->width = arguments->size.width;
         settings->height = arguments->size.height;
     }
     if (arguments->present_mode)
         snprintf(settings->present_mode, sizeof settings->present_mode, "%s", arguments->present_mode);
-    if (arguments->goal.given)
-        settings->goal_ms = (float)arguments->goal.value;
     view->panels = settings->panel && !arguments->bare;
     view->governor.on = settings->adapt && !arguments->no_adapt;
-    view->governor.goal_ms = settings->goal_ms;
+    view->governor.goal_ms = arguments->goal.given ? arguments->goal.value : (double)settings->goal_ms;
     memcpy(view->rig.presets, settings->presets, sizeof view->rig.presets);
     memcpy(view->rig.preset_set, settings->preset_set, sizeof view->rig.preset_set);
 }
@@ -327,7 +327,9 @@ static void keep_settings(struct sf_view *view)
         settings->panel = view->panels;
     if (!view->arguments->no_adapt)
         settings->adapt = view->governor.on;
-    settings->goal_ms = (float)view->governor.goal_ms;
+    if (!view->arguments->goal.given)
+        settings->goal_ms = (float)view->governor.goal_ms;
+    snprintf(settings->present_mode, sizeof settings->present_mode, "%s", view->remembered_mode);
     memcpy(settings->presets, view->rig.presets, sizeof view->rig.presets);
     memcpy(settings->preset_set, view->rig.preset_set, sizeof view->rig.preset_set);
     sf_settings_save(settings);
@@ -375,9 +377,9 @@ static enum sf_status open_all(struct sf_view *view)
         return status;
     sf_screen_size(view->screen, &width, &height);
     place(view, width > 0 ? width : view->settings.width, height > 0 ? height : view->settings.height);
-    sf_view_look(view, "");
+    sf_view_look(view, arguments->inspect ? arguments->inspect : "");
     view->looking.zoom = 1;
-    view->handle = -1;
+    view->handle = view->tab = -1;
     sf_playback_init(&view->playback, view->model.info.fps);
     sf_playback_seek(&view->playback, arguments->first_frame);
     view->playback.playing = !arguments->paused;

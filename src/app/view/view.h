@@ -18,7 +18,7 @@
 #include "stats.h"
 #include "ui.h"
 
-enum { SF_NOTES = 6, SF_NOTE_BYTES = 512, SF_NAME_BYTES = 64, SF_FLIGHT = 2 };
+enum { SF_TABS = 5, SF_NOTES = 6, SF_NOTE_BYTES = 512, SF_NAME_BYTES = 64, SF_FLIGHT = 2 };
 
 /* A message that stays in the picture's corner for a while: errors until they are clicked away. */
 struct sf_note {
@@ -37,19 +37,19 @@ struct sf_flight {
 /* The image of the graph that is looked at in place of the picture. */
 struct sf_looking {
     char name[SF_NAME_BYTES]; /* "": the picture itself */
-    float *values;            /* [height][width][channels], a copy of the last frame's; NULL until it comes, or a buffer */
+    float *values; /* [height][width][channels], a copy of the last frame's; NULL until it comes, or a buffer */
     uint32_t width, height, channels;
     uint32_t *words; /* of a buffer */
     uint32_t word_count;
     uint64_t version; /* counts copies */
     bool automatic;   /* the range follows the values */
     bool logarithmic;
-    int channel;    /* 0: all as colours; 1..4: that one as grey */
-    float low, high; /* the range that becomes 0..1; of the widest channel while it is automatic */
-    float ranges[3][2]; /* automatic: of the channels shown; */
-    uint64_t ranged;    /* and hash of what they were found from */
-    uint8_t *pixels; /* mapped, RGBA */
-    uint64_t mapped; /* hash of what pixels were mapped from */
+    int channel;              /* 0: all as colours; 1..4: that one as grey */
+    float low, high;          /* the range that becomes 0..1; of the widest channel while it is automatic */
+    float ranges[3][2];       /* automatic: of the channels shown; */
+    uint64_t ranged;          /* and hash of what they were found from */
+    uint8_t *pixels;          /* mapped, RGBA */
+    uint64_t mapped;          /* hash of what pixels were mapped from */
     float zoom, pan_x, pan_y; /* 1: fits the picture's place; pan in px */
 };
 
@@ -67,12 +67,13 @@ struct sf_view_count {
 
 struct sf_view {
     const struct sf_arguments *arguments;
-    struct sf_log log; /* to the console, and into notes */
-    pthread_mutex_t notes_lock; /* the log may be written to by any thread */
+    struct sf_log log;              /* to the console, and into notes */
+    pthread_mutex_t notes_lock;     /* the log may be written to by any thread */
     struct sf_note notes[SF_NOTES]; /* newest last */
     unsigned note_count;
 
     struct sf_settings settings;
+    char remembered_mode[16]; /* present mode for next time: not one that the command line named */
     struct sf_screen *screen;
     struct sf_ui *ui;
     struct sf_device *device;
@@ -95,29 +96,31 @@ struct sf_view {
     uint64_t landed_ns; /* when the last one was done; 0: pause */
     uint32_t live, dropped;
     float bounds_min[3], bounds_max[3];
-    uint32_t drawn_frame; /* of the newest picture */
+    uint32_t drawn_frame;           /* of the newest picture */
     uint64_t seek_done, seek_total; /* steps on a long way; total 0: none */
 
-    float picture[4];   /* px: x, y, width, height of the picture's place in the window */
+    float picture[4]; /* px: x, y, width, height of the picture's place in the window */
     bool panels, keys_shown, lights_shown;
-    bool dirty;   /* the picture must be drawn again */
-    bool settle;  /* the window must be drawn again, though the picture stays */
+    bool dirty;  /* the picture must be drawn again */
+    bool settle; /* the window must be drawn again, though the picture stays */
     bool closing;
-    bool shot;    /* a screenshot is wanted */
+    bool shot; /* a screenshot is wanted */
     struct sf_looking looking;
-    struct sf_graph_data *graph; /* graph_data.h; read off at graph->version; sf_graph_data_destroy at the end */
+    struct sf_graph_data *graph;     /* graph_data.h; read off at graph->version; sf_graph_data_destroy at the end */
     char look_search[SF_NAME_BYTES]; /* in the graph's resources */
     int words_as;                    /* of a buffer: 0 what is likely, 1 float, 2 uint, 3 hex */
     enum sf_hold hold;
-    int handle;     /* light's handle that is held, or -1 */
-    unsigned light; /* selected by keys */
-    bool moved;     /* the camera, since the last picture */
+    int handle;      /* light's handle that is held, or -1 */
+    bool handle_far; /* it was on the far side when it was taken */
+    unsigned light;  /* selected by keys */
+    bool moved;      /* the camera, since the last picture */
     struct sf_view_count counted;
     char search[SF_NAME_BYTES]; /* in the parameters */
     bool focus_search;
+    int tab;         /* of the side panel, to be opened now; -1: none */
     bool said_place; /* where the first control found stands, for scripts that drive the mouse */
     char save_path[512];
-    char saved_path[512]; /* that may be replaced without asking */
+    char saved_path[512];   /* that may be replaced without asking */
     uint64_t graph_version; /* counts remade graphs: what was read off the old one is stale */
     uint64_t input_ns;      /* when the input that this picture answers came; 0: none */
 };
@@ -174,8 +177,8 @@ void sf_panel_keys(struct sf_view *view);                                       
 
 /* looking.c: the looked-at image as RGBA pixels for sf_window_show, as large as the picture's place in px with zoom and pan
  * in them; mapped anew when something changed. NULL: show the picture. */
-const uint8_t *sf_looking_pixels(struct sf_looking *looking, uint32_t place_width, uint32_t place_height, uint32_t *width,
-                                 uint32_t *height);
+const uint8_t *sf_looking_pixels(struct sf_looking *looking, uint32_t place_width, uint32_t place_height,
+                                 uint32_t *width, uint32_t *height);
 /* Takes over what came back with a frame. */
 void sf_looking_take(struct sf_looking *looking, const struct sf_frame *frame);
 void sf_looking_finish(struct sf_looking *looking);
