@@ -28,7 +28,7 @@ static void find_constants(struct sf_drawn *drawn)
     const struct sf_environment *environment = &scene->environment;
     uint32_t kinds = 0, casts = 0, checkered = 0;
 
-    for (uint32_t i = 0; i < scene->light_count; i++) {
+    for (uint32_t i = 0; i < scene->light_count && i < SF_LIGHTS_MAX; i++) {
         kinds |= (uint32_t)scene->lights[i].kind << 2 * i;
         casts |= (uint32_t)scene->lights[i].shadows << i;
     }

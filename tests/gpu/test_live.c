@@ -319,6 +319,28 @@ static uint64_t memory_used(void)
     return used;
 }
 
+/* Other options, or another scene; then sometimes a frame. */
+static void change_somehow(struct sf_renderer *renderer, struct sf_scene *const *scenes, uint32_t count,
+                           uint32_t random)
+{
+    static const char *const looked[] = {NULL, "color", "counts", "objects", "particles"};
+    const struct sf_renderer_options options = {.width = 1 + (random >> 8) % 150,
+                                                .height = 1 + (random >> 16) % 120,
+                                                .shown = random >> 24 & 1,
+                                                .returned = random >> 25 & 1,
+                                                .timing = random >> 26 & 1,
+                                                .float_color = random >> 27 & 1,
+                                                .aovs = random >> 28 & 3,
+                                                .inspect = looked[(random >> 12) % SF_COUNT(looked)]};
+    enum sf_status status = random >> 31 ? sf_renderer_set_options(renderer, &options)
+                                         : sf_renderer_set_scene(renderer, scenes[(random >> 10) % count]);
+
+    if (status != SF_OK)
+        fail_msg("%s", live_message);
+    if (random >> 20 & 1)
+        live_frame(renderer, (random >> 21) % 7);
+}
+
 /* A device of little memory takes it in small blocks, so that what is left behind shows. Blocks that are there for a
  * hole's sake may stay as long as the renderer lives, and no longer. */
 static void test_memory(void **state)
@@ -328,12 +350,11 @@ static void test_memory(void **state)
         "method=none", "thick.resolution=full", "lights.0.direction=1,-1,1", "environment.visible=false",
         "sim.seed=3",  "medium.g=0.1"};
     enum { HOLES = 2 };
-    static const char *const looked[] = {NULL, "color", "counts", "objects", "particles"};
     const struct sf_device_options limited = {.validate = true, .no_cache = true, .budget_bytes = 24 << 20};
+    const uint64_t block = limited.budget_bytes / 8;
     struct sf_device *usual = live_device;
     struct sf_scene *scenes[2 * SF_COUNT(sets)];
     struct sf_renderer *renderer;
-    uint64_t used = 0, idle = 0;
     uint32_t random = 1;
 
     (void)state;
@@ -342,42 +363,26 @@ static void test_memory(void **state)
         scenes[2 * i + 1] = live_parse(live_lists, i == 6 ? NULL : sets[i]);
     }
     assert_int_equal(sf_device_create(&limited, &live_log, &live_device), SF_OK);
-    for (int i = 0; i < 2; i++) { /* the device's own, for frames in flight, is taken by the first of all */
-        renderer = live_create(scenes[0], &plain);
-        live_frame(renderer, 3);
-        live_frame(renderer, 4);
-        used = memory_used();
-        if (i == 0)
-            sf_renderer_destroy(&renderer);
-        idle = i == 0 ? memory_used() : idle;
-    }
+    renderer = live_create(scenes[0], &plain);
+    live_frame(renderer, 3);
+    live_frame(renderer, 4);
+    uint64_t used = memory_used();
+    sf_renderer_destroy(&renderer);
+    uint64_t idle = memory_used(); /* the device's own, for frames in flight */
+    renderer = live_create(scenes[0], &plain);
     for (int i = 0; i < 200; i++) {
         random = random * 1664525u + 1013904223u;
-        if (random >> 31) {
-            const struct sf_renderer_options options = {.width = 1 + (random >> 8) % 150,
-                                                        .height = 1 + (random >> 16) % 120,
-                                                        .shown = random >> 24 & 1,
-                                                        .returned = random >> 25 & 1,
-                                                        .timing = random >> 26 & 1,
-                                                        .float_color = random >> 27 & 1,
-                                                        .aovs = random >> 28 & 3,
-                                                        .inspect = looked[(random >> 12) % SF_COUNT(looked)]};
-            assert_int_equal(sf_renderer_set_options(renderer, &options), SF_OK);
-        } else if (sf_renderer_set_scene(renderer, scenes[(random >> 10) % SF_COUNT(scenes)]) != SF_OK) {
-            fail_msg("change %d: %s", i, live_message);
-        }
-        if (random >> 20 & 1)
-            live_frame(renderer, (uint32_t)i % 7);
+        change_somehow(renderer, scenes, SF_COUNT(scenes), random);
     }
     assert_int_equal(sf_renderer_set_options(renderer, &plain), SF_OK);
     assert_int_equal(sf_renderer_set_scene(renderer, scenes[0]), SF_OK);
     live_compare(renderer, scenes[0], &plain, 3, "after 200 changes");
-    if (memory_used() > used + HOLES * (limited.budget_bytes / 8))
+    if (memory_used() > used + HOLES * block)
         fail_msg("%llu bytes are used after 200 changes, %llu before", (unsigned long long)memory_used(),
                  (unsigned long long)used);
     sf_renderer_destroy(&renderer);
     if (memory_used() != idle)
-        fail_msg("%llu bytes are left of 200 changes, %llu of one", (unsigned long long)memory_used(),
+        fail_msg("%llu bytes are left of 200 changes, %llu of none", (unsigned long long)memory_used(),
                  (unsigned long long)idle);
     assert_int_equal(sf_device_validation_messages(live_device), 0);
     live_errors = 0;

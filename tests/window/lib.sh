@@ -56,7 +56,7 @@ start() {
     view=$!
     find_window
     until_true 60 said 'the first picture' || { fail "no picture"; cat err; }
-    steady
+    case " $* " in *" --paused "*) steady ;; esac
 }
 
 # Waits until the window shows something and what it shows has stopped changing (for a viewer that is paused).

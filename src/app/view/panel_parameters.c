@@ -145,6 +145,38 @@ static bool edit(struct sf_control *control, char text[TEXT_BYTES])
     }
 }
 
+/* Another type may ask for keys that the one before did not have. */
+static void set_type(struct sf_view *view, const struct sf_control *control, const char *assignment)
+{
+    static const struct {
+        const char *type, *key, *value;
+    } needs[] = {{"directional", "direction", "-0.5,-1,-0.3"},
+                 {"spot", "direction", "0,-1,0"},
+                 {"spot", "position", "0,3,0"},
+                 {"point", "position", "0,3,0"},
+                 {"buoyancy", "strength", "0.02"},
+                 {"drag", "strength", "1"},
+                 {"turbulence", "strength", "1"},
+                 {"vortex", "strength", "1"},
+                 {"wind", "velocity", "1,0,0"}};
+    enum { SETS_MAX = 4 };
+    const char *type = control->choices[(int)control->value[0]], *sets[SETS_MAX] = {assignment};
+    char extra[SETS_MAX][SF_NAME_BYTES * 2];
+    uint32_t count = 1;
+
+    for (size_t i = 0; i < sizeof needs / sizeof needs[0] && count < SETS_MAX; i++) {
+        char *to = extra[count];
+
+        snprintf(to, sizeof extra[0], "%s.%s", control->group, needs[i].key);
+        if (strcmp(needs[i].type, type) != 0 || sf_model_control(&view->model, to))
+            continue;
+        snprintf(to, sizeof extra[0], "%s.%s=%s", control->group, needs[i].key, needs[i].value);
+        sets[count++] = to;
+    }
+    sf_model_set_many(&view->model, sets, count);
+    view->settle = true;
+}
+
 static void draw_control(struct sf_view *view, const struct sf_control *control)
 {
     bool changed = sf_model_changed(&view->model, control->path), apply;
@@ -178,7 +210,9 @@ static void draw_control(struct sf_view *view, const struct sf_control *control)
     if (!apply)
         return;
     assignment = sf_control_print(&copy);
-    if (assignment)
+    if (assignment && copy.kind == SF_CONTROL_CHOICE && strcmp(copy.key, "type") == 0)
+        set_type(view, &copy, assignment);
+    else if (assignment)
         sf_view_set(view, assignment);
     free(assignment);
 }

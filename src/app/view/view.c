@@ -54,7 +54,7 @@ static float panel_width(const struct sf_view *view, uint32_t width, uint32_t he
 
 static float bar_height(const struct sf_view *view, uint32_t width, uint32_t height)
 {
-    return panel_width(view, width, height) > 0 ? 2 * sf_ui_line() : 0;
+    return panel_width(view, width, height) > 0 ? 1.55f * sf_ui_line() : 0;
 }
 
 static void place(struct sf_view *view, uint32_t width, uint32_t height)
@@ -178,10 +178,11 @@ static enum sf_status show(struct sf_view *view, const struct sf_overlay *overla
 /* How long the loop may sleep. */
 static double rest(const struct sf_view *view, unsigned awake, bool minimised)
 {
-    double due = sf_playback_due(&view->playback, sf_now_ns());
+    double due = sf_playback_due(&view->playback, sf_now_ns()), ui = sf_ui_due();
 
     if (minimised)
         return MINIMISED_S;
+    due = ui < due ? ui : due;
     if (awake > 0 || view->dirty || view->settle || view->shot || view->seek_total > 0 || view->hold == SF_HOLD_LOOK ||
         sf_picture_pending(view) || view->governor.level > 0)
         return 0;
@@ -247,7 +248,8 @@ static enum sf_status loop(struct sf_view *view)
             view->playback.last_ns = now;
             continue;
         }
-        if (awake > 0 || rest(view, 0, false) <= 0)
+        /* Messages fade while nothing else happens. */
+        if (awake > 0 || view->note_count > 0 || rest(view, 0, false) <= 0)
             status = draw_turn(view, (double)(now - before) * 1e-9);
         awake -= awake > 0;
         before = now;
