@@ -41,7 +41,7 @@ static enum sf_status record_steps(struct sf_renderer *renderer, uint64_t count)
 /* The host wanted it so, and knows: no error. */
 static enum sf_status stopped(const struct sf_renderer *renderer, uint64_t step, uint64_t target)
 {
-    sf_log(renderer->log, SF_LOG_INFO, "the simulation was stopped at step %llu of %llu", (unsigned long long)step,
+    sf_log(renderer->log, SF_LOG_DEBUG, "the simulation was stopped at step %llu of %llu", (unsigned long long)step,
            (unsigned long long)target);
     return SF_ERROR_INTERRUPTED;
 }

@@ -8,7 +8,7 @@ need_device
 
 screen=1280x1024
 Xvfb -displayfd 3 -screen 0 ${screen}x24 -nolisten tcp 3>display 2>/dev/null &
-x=$!
+server=$!
 tries=0
 while [ ! -s display ] && [ $tries -lt 200 ]; do
     sleep 0.05
@@ -18,14 +18,14 @@ done
 DISPLAY=:$(cat display)
 export DISPLAY
 openbox >/dev/null 2>&1 &
-wm=$!
+manager=$!
 sleep 0.5 # it holds the server while it takes the screen over
 XDG_CONFIG_HOME=$work/config
 export XDG_CONFIG_HOME
 view=
 leave() {
     [ -z "$view" ] || kill -9 "$view" 2>/dev/null
-    kill "$wm" "$x" 2>/dev/null
+    kill "$manager" "$server" 2>/dev/null
     wait 2>/dev/null
     cleanup
 }

@@ -15,7 +15,7 @@ steady
 shot broken.png
 same first.png broken.png 0 "a broken scene file leaves the old scene"
 cp "$SF_SOURCE_ROOT/scenes/plume.json" scenes/new.json
-"$SFUMATO" check -q scenes/new.json || fail "check"
+"$SFUMATO" check -q scenes/new.json >/dev/null || fail "check"
 python3 - <<'P'
 import json
 scene = json.load(open("scenes/new.json"))
@@ -55,7 +55,7 @@ same mended.png mended-shader.png 0 "the mended shader"
 key ctrl+s
 expect_said 10 'wrote plume-edited.json'
 finish
-"$SFUMATO" check -q plume-edited.json || fail "the saved scene is wrong"
+"$SFUMATO" check -q plume-edited.json >/dev/null || fail "the saved scene is wrong"
 run "$SFUMATO" capture plume-edited.json -s 320x240 --frames 30 -o saved.png
 same headless.png saved.png 0 "the saved scene against its source"
 done_testing

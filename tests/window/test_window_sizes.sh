@@ -60,7 +60,11 @@ for mode in fifo mailbox immediate; do
 done
 expect 2 'fifo' view "$scene" --present-mode vsync
 expect 2 'mailbox' view "$scene" --present-mode vsync
-expect 3 'nowhere' view --set nowhere.x=1 "$scene"
-(unset DISPLAY WAYLAND_DISPLAY; expect 4 'capture' view "$scene"; exit $failures) || failures=$((failures + 1))
+expect 2 'nowhere' view --set nowhere.x=1 "$scene"
+screen_name=$DISPLAY
+unset DISPLAY
+expect 4 'capture' view "$scene"
+DISPLAY=$screen_name
+export DISPLAY
 DISPLAY=:77777 expect 4 'capture' view "$scene"
 done_testing

@@ -16,7 +16,8 @@ void sf_view_note(struct sf_view *view, enum sf_log_level level, const char *for
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
-    view->log.write(view->log.user, level, text);
+    if (level <= view->answers.level)
+        view->answers.write(view->answers.user, level, text);
 }
 
 void sf_view_set(struct sf_view *view, const char *assignment)

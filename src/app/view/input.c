@@ -93,7 +93,7 @@ static uint32_t handle_color(const struct sf_handle *handle)
 void sf_input_draw_lights(struct sf_view *view)
 {
     struct sf_handle handles[SF_HANDLES_MAX];
-    unsigned count = view->lights_shown && !view->looking.name[0] ? find_handles(view, handles) : 0;
+    unsigned count = view->lights_shown && !view->looking.values ? find_handles(view, handles) : 0;
     float x0 = view->picture[0], y0 = view->picture[1], radius = 6 * sf_ui_scale();
 
     if (count == 0)
@@ -122,7 +122,7 @@ static enum sf_hold press(struct sf_view *view, int button, float x, float y)
 {
     int mods = sf_screen_mods(view->screen);
 
-    if (view->looking.name[0])
+    if (view->looking.values)
         return SF_HOLD_LOOKED;
     if (button == 0 && view->lights_shown) {
         struct sf_handle handles[SF_HANDLES_MAX];
@@ -156,7 +156,7 @@ static void take_mouse(struct sf_view *view)
     for (int button = 0; button < 3 && view->hold == SF_HOLD_NONE; button++)
         if (sf_ui_mouse_clicked(button) && !sf_ui_takes_mouse() && in_picture(view, x, y))
             view->hold = press(view, button, x, y);
-    if (wheel != 0 && !sf_ui_takes_mouse() && in_picture(view, x, y) && !view->looking.name[0]) {
+    if (wheel != 0 && !sf_ui_takes_mouse() && in_picture(view, x, y) && !view->looking.values) {
         sf_rig_dolly(&view->rig, wheel);
         moved(view);
     }

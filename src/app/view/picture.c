@@ -42,7 +42,7 @@ static enum sf_status land(struct sf_view *view)
     sf_stats_add(&view->stats, timings, count, flight.cpu_ms,
                  view->landed_ns ? (float)(now - view->landed_ns) * NS_TO_MS : 0, flight.record_ms);
     view->landed_ns = now;
-    if (view->looking.name[0])
+    if (view->looking.name[0] && strcmp(view->looking.name, view->inspected) == 0)
         sf_looking_take(&view->looking, &frame);
     if (sf_shots_recording(view->shots) && view->options.returned)
         return sf_picture_store(view, &frame);
@@ -153,6 +153,11 @@ enum sf_status sf_picture_accept(void *user, const struct sf_scene *scene)
     struct sf_scene_info info;
     enum sf_status status = view->renderer ? give_scene(view, scene) : SF_OK;
 
+    if (status == SF_ERROR_USAGE && view->inspected[0]) { /* another method has other images */
+        sf_view_look(view, "");
+        status = update_options(view);
+        status = status ? status : give_scene(view, scene);
+    }
     if (status)
         return status;
     drop_coarse(view);

@@ -21,16 +21,11 @@ enum { BARE_PIXELS = 240, TURNS_AWAKE = 3 };
 
 /* ---- messages ---- */
 
-/* Any thread. */
-static void write_note(void *user, enum sf_log_level level, const char *message)
+/* Into the picture's corner. Any thread. */
+static void add_note(struct sf_view *view, enum sf_log_level level, const char *message)
 {
-    struct sf_view *view = user;
-    const struct sf_log *console = sf_console_log();
     struct sf_note *note;
 
-    console->write(console->user, level, message);
-    if (level > SF_LOG_INFO)
-        return;
     pthread_mutex_lock(&view->notes_lock);
     if (view->note_count == SF_NOTES)
         memmove(&view->notes[0], &view->notes[1], --view->note_count * sizeof view->notes[0]);
@@ -39,6 +34,26 @@ static void write_note(void *user, enum sf_log_level level, const char *message)
     note->born_ns = sf_now_ns();
     snprintf(note->text, sizeof note->text, "%s", message);
     pthread_mutex_unlock(&view->notes_lock);
+}
+
+/* The library's words: what is wrong stands in the picture too. */
+static void write_log(void *user, enum sf_log_level level, const char *message)
+{
+    const struct sf_log *console = sf_console_log();
+
+    console->write(console->user, level, message);
+    if (level <= SF_LOG_WARNING)
+        add_note(user, level, message);
+}
+
+/* Answers to what the person did: they stand there as well. */
+static void write_answer(void *user, enum sf_log_level level, const char *message)
+{
+    const struct sf_log *console = sf_console_log();
+
+    console->write(console->user, level, message);
+    if (level <= SF_LOG_INFO)
+        add_note(user, level, message);
 }
 
 /* ---- places ---- */
@@ -372,7 +387,7 @@ static enum sf_status open_all(struct sf_view *view)
     if (!status)
         status = open_window(view);
     if (!status)
-        status = sf_shots_create(arguments->folder, &view->log, &view->shots);
+        status = sf_shots_create(arguments->folder, &view->answers, &view->shots);
     if (!status)
         status = sf_reload_create(arguments->shaders, view->device, &view->log, &view->reload);
     if (status)
@@ -456,9 +471,12 @@ enum sf_status sf_view_run(const struct sf_arguments *arguments)
         return sf_console_fail(SF_ERROR_MEMORY, "out of memory");
     }
     view->arguments = arguments;
-    view->log = (struct sf_log){.write = write_note, .user = view, .level = SF_LOG_INFO};
-    if (sf_console_log()->level > view->log.level)
-        view->log.level = sf_console_log()->level;
+    view->log = (struct sf_log){.write = write_log, .user = view, .level = sf_console_log()->level};
+    if (view->log.level < SF_LOG_WARNING)
+        view->log.level = SF_LOG_WARNING;
+    view->answers = (struct sf_log){.write = write_answer, .user = view, .level = SF_LOG_INFO};
+    if (view->log.level > view->answers.level)
+        view->answers.level = view->log.level;
     view->counted.begin_ns = sf_now_ns();
     take_settings(view);
     status = open_all(view);

@@ -67,7 +67,8 @@ struct sf_view_count {
 
 struct sf_view {
     const struct sf_arguments *arguments;
-    struct sf_log log;              /* to the console, and into notes */
+    struct sf_log log;              /* to the console; warnings and errors into notes */
+    struct sf_log answers;          /* the same, information into notes as well */
     pthread_mutex_t notes_lock;     /* the log may be written to by any thread */
     struct sf_note notes[SF_NOTES]; /* newest last */
     unsigned note_count;
