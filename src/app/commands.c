@@ -123,7 +123,8 @@ static const struct sf_option params_options[] = {{"format", 0, SF_OPTION_WORD, 
 
 static const struct sf_option *const capture_tables[] = {capture_options, size_options,   scene_options,
                                                          device_options,  common_options, NULL};
-static const struct sf_option *const view_tables[] = {view_options, scene_options, device_options, common_options, NULL};
+static const struct sf_option *const view_tables[] = {view_options, scene_options, device_options, common_options,
+                                                      NULL};
 static const struct sf_option *const bench_tables[] = {bench_options,  size_options,   scene_options,
                                                        device_options, common_options, NULL};
 static const struct sf_option *const devices_tables[] = {devices_options, common_options, NULL};
