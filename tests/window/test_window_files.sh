@@ -51,6 +51,19 @@ steady
 shot mended-shader.png
 same mended.png mended-shader.png 0 "the mended shader"
 
+# A file that is dropped on the window opens; then the first one again, by the same way.
+cp "$SF_SOURCE_ROOT/scenes/burst.json" scenes/burst.json
+title() { timeout 5 xdotool getwindowname "$window" | grep -q "$1"; }
+"$SF_DROP" "$window" "file://$work/scenes/burst.json
+" || fail "the window does not take a drop"
+until_true 10 title burst || fail "a dropped scene does not open"
+steady
+shot burst.png
+differ mended.png burst.png "a dropped scene"
+"$SF_DROP" "$window" "file://$work/scenes/plume.json
+"
+until_true 10 title plume || fail "a dropped scene does not open"
+
 # Saved: what was set, and only what differs from the defaults.
 key ctrl+s
 expect_said 10 'wrote plume-edited.json'

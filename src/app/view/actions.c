@@ -58,11 +58,13 @@ void sf_view_opened(struct sf_view *view)
 
 void sf_view_open(struct sf_view *view, const char *path)
 {
+    bool playing = view->playback.playing;
+
     if (sf_model_replace(&view->model, path))
         return;
     sf_rig_release(&view->rig);
     sf_playback_init(&view->playback, view->model.info.fps);
-    view->playback.playing = true;
+    view->playback.playing = playing;
     sf_view_opened(view);
     view->dirty = true;
 }
