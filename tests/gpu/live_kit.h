@@ -15,7 +15,7 @@
 static struct sf_device *live_device;
 static int live_errors;
 static char live_message[4096]; /* the last warning or error */
-static char live_said[256];     /* the last of level info */
+static char live_said[256];     /* the last that is no warning */
 
 static inline void live_write(void *user, enum sf_log_level level, const char *message)
 {
@@ -28,7 +28,7 @@ static inline void live_write(void *user, enum sf_log_level level, const char *m
     if (getenv("SF_TEST_VERBOSE"))
         fprintf(stderr, "%s\n", message);
 }
-static const struct sf_log live_log = {.write = live_write, .level = SF_LOG_INFO};
+static const struct sf_log live_log = {.write = live_write, .level = SF_LOG_DEBUG};
 
 /* Files are looked for beside scenes/tiny. NULL when it is no scene. */
 static inline struct sf_scene *live_try(const char *text, const char *const *sets, uint32_t count)
