@@ -48,7 +48,11 @@ void sf_view_stem(const struct sf_view *view, char *stem, size_t room)
 void sf_view_opened(struct sf_view *view)
 {
     char stem[SF_NAME_BYTES], title[SF_NAME_BYTES + 16];
+    struct sf_camera_view camera;
 
+    /* The mouse may move the eye before the first picture. */
+    sf_scene_view(view->model.scene, view->playback.frame / view->model.info.fps, &camera);
+    sf_rig_follow(&view->rig, &camera);
     sf_settings_recent(&view->settings, view->model.path);
     stem_of(view->model.path, stem, sizeof stem);
     snprintf(title, sizeof title, "sfumato - %s", stem);
