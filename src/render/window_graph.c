@@ -90,7 +90,8 @@ static enum sf_status want_source(const struct sf_window_input *input, const str
         return SF_OK;
     if (!frame->tone)
         return sf_fail(log, SF_ERROR_USAGE, "window: a renderer's picture is shown without a tone mapping");
-    exact = frame->width == (float)input->picture_width && frame->height == (float)input->picture_height;
+    exact = frame->width == (float)input->picture_width && frame->height == (float)input->picture_height &&
+            frame->x == floorf(frame->x) && frame->y == floorf(frame->y);
     shape->source = exact ? SF_WINDOW_EXACT : SF_WINDOW_SCALED;
     shape->source_width = input->picture_width;
     shape->source_height = input->picture_height;
