@@ -73,22 +73,42 @@ steady() {
     fail "the window does not come to rest"
 }
 
-# shot FILE.png: what the window shows now.
-shot() { import -window "$window" "$1"; }
+# shot FILE.png [GEOMETRY]: what the window shows now, or that part of it.
+shot() {
+    import -window "$window" whole.png
+    if [ -n "${2:-}" ]; then convert whole.png -crop "$2" +repage "$1"; else mv whole.png "$1"; fi
+    last_shot=$1 last_part=${2:-}
+}
 # colors FILE: how many there are.
 colors() { identify -format %k "$1"; }
 # apart A B: the greatest difference of any channel of any pixel, 0 to 255.
 apart() {
     compare -metric PAE "$1" "$2" null: 2>&1 | sed 's/.*(\(.*\)).*/\1/' | awk '{ printf "%d\n", $1 * 255 + 0.5 }'
 }
+# A busy machine may draw late: when the last shot is one of the two, it is taken again for up to ten seconds.
 # same A B TOLERANCE WHAT; differ A B WHAT
 same() {
-    far=$(apart "$1" "$2")
-    [ "${far:-999}" -le "$3" ] || fail "$4: $1 and $2 differ by ${far:-size} of 255"
+    tries=0
+    while far=$(apart "$1" "$2"); [ "${far:-999}" -gt "$3" ]; do
+        tries=$((tries + 1))
+        if [ $tries -gt 20 ] || { [ "$last_shot" != "$1" ] && [ "$last_shot" != "$2" ]; }; then
+            fail "$4: $1 and $2 differ by ${far:-size} of 255"
+            return
+        fi
+        sleep 0.5
+        shot "$last_shot" "$last_part"
+    done
 }
 differ() {
-    far=$(apart "$1" "$2")
-    [ "${far:-999}" -gt 0 ] || fail "$3: nothing has changed"
+    tries=0
+    while far=$(apart "$1" "$2"); [ "${far:-999}" -eq 0 ]; do
+        tries=$((tries + 1))
+        [ $tries -le 20 ] || { fail "$3: nothing has changed"; return; }
+        sleep 0.5
+        shot "$last_shot" "$last_part"
+    done
+    # What has begun to change is waited for.
+    [ $tries -eq 0 ] || { steady; shot "$last_shot" "$last_part"; }
 }
 
 key() { xdotool key --window "$window" --delay 40 "$@" 2>/dev/null || xdotool key "$@"; }

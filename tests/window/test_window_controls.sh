@@ -2,11 +2,11 @@
 # Panels, keys and the mouse: a slider that is moved changes the picture, and back; time obeys its keys.
 . "$SF_SOURCE_ROOT/tests/window/lib.sh"
 scene=$SF_SOURCE_ROOT/scenes/plume.json
-crop() { convert "$1" -crop 500x400+20+20 +repage "$2"; }
+part=500x400+20+20 # of the picture
 
 start "$scene" -s 1100x700 --paused --frame 30 -vv
 shot panels.png
-crop panels.png plain.png
+shot plain.png $part
 
 # Ctrl+F, a name, and the first control found stands where the viewer says.
 key ctrl+f
@@ -26,13 +26,13 @@ xdotool mouseup 1
 xdotool mousemove --window "$window" 5 5
 steady
 shot moved.png
-crop moved.png changed.png
+shot changed.png $part
 differ plain.png changed.png "a slider moved by the mouse"
 key Escape
 key ctrl+z
 steady
 shot back.png
-crop back.png again.png
+shot again.png $part
 same plain.png again.png 0 "every parameter as in the file again"
 
 # Keys: panels away and back, the list of keys, a step, the beginning.
@@ -45,14 +45,14 @@ key Tab
 key question
 steady
 shot keys.png
-crop keys.png keys-cropped.png
+shot keys-cropped.png $part
 differ plain.png keys-cropped.png "the list of keys"
 key Escape
 key period
 key period
 steady
 shot stepped.png
-crop stepped.png stepped-cropped.png
+shot stepped-cropped.png $part
 differ plain.png stepped-cropped.png "two frames on"
 key f
 steady
@@ -65,7 +65,7 @@ differ framed.png above.png "the view from above"
 key c
 steady
 shot scene.png
-crop scene.png scene-cropped.png
+shot scene-cropped.png $part
 same stepped-cropped.png scene-cropped.png 0 "the scene's camera again"
 key l
 key Right Right Right
