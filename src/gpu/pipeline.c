@@ -1,4 +1,4 @@
-/* Pipelines: made once for each distinct key, kept by the device.
+/* Pipelines: made once for each distinct key, kept by the device while players use them and for some time after.
  *
  * Conventions of drawing: projection matrices already turn y down (Vulkan's clip space), so viewports are positive.
  * Front faces are counter-clockwise as one sees them on the screen, which is VK_FRONT_FACE_COUNTER_CLOCKWISE: the minus
@@ -272,6 +272,50 @@ enum sf_status sf_pipeline_request(struct sf_gpu *gpu, const char *pass, const s
     return SF_OK;
 }
 
+/* Of those that are made. */
+static void drop(struct sf_gpu *gpu, size_t at)
+{
+    pipeline_destroy(gpu, gpu->pipelines[at]);
+    gpu->pipelines_made--;
+    gpu->pipeline_count--;
+    memmove(&gpu->pipelines[at], &gpu->pipelines[at + 1], (gpu->pipeline_count - at) * sizeof gpu->pipelines[0]);
+}
+
+void sf_pipeline_take(struct sf_pipeline *pipeline)
+{
+    if (pipeline)
+        pipeline->users++;
+}
+
+void sf_pipeline_give_back(struct sf_pipeline *pipeline)
+{
+    if (pipeline && --pipeline->users == 0)
+        pipeline->unused_since = ++pipeline->gpu->pipelines_left;
+}
+
+/* Dropping is safe because only steps of players bind pipelines, and sf_player_destroy settles before it gives its
+ * steps' back: the device has done all that was submitted with an unused pipeline. What remains is a frame that is
+ * open, whose commands may hold plays of a player that is gone, and a device that does not answer: then nothing is
+ * dropped until another player goes. */
+void sf_pipelines_trim(struct sf_gpu *gpu)
+{
+    size_t unused = 0;
+
+    if (gpu->recording || gpu->stuck)
+        return;
+    for (size_t i = 0; i < gpu->pipelines_made; i++)
+        unused += gpu->pipelines[i]->users == 0;
+    for (; unused > SF_PIPELINES_UNUSED_MAX; unused--) {
+        size_t oldest = SIZE_MAX;
+
+        for (size_t i = 0; i < gpu->pipelines_made; i++)
+            if (gpu->pipelines[i]->users == 0 &&
+                (oldest == SIZE_MAX || gpu->pipelines[i]->unused_since < gpu->pipelines[oldest]->unused_since))
+                oldest = i;
+        drop(gpu, oldest);
+    }
+}
+
 static enum sf_status build(void *user)
 {
     struct sf_pipeline *pipeline = user;
@@ -315,6 +359,22 @@ enum sf_status sf_pipelines_build(struct sf_gpu *gpu)
     return SF_OK;
 }
 
+static bool runs(const struct sf_pipeline *pipeline, const struct sf_shader *shader)
+{
+    return pipeline->key.shader == shader || pipeline->key.fragment == shader;
+}
+
+/* An unused pipeline is not worth compiling, but a shader that does not fit its pass is refused while there is an old
+ * one to stay with. */
+static enum sf_status remake(const struct sf_pipeline *pipeline, const struct sf_shader *shader, VkPipeline *handle)
+{
+    const struct sf_shader *now = sf_shader_now(pipeline->gpu, shader);
+
+    if (pipeline->users > 0)
+        return create_handle(pipeline, handle);
+    return now == shader ? SF_OK : sf_shader_check(pipeline->gpu, now, pipeline->key.shader->name, &pipeline->key);
+}
+
 enum sf_status sf_pipelines_remake(struct sf_gpu *gpu, const struct sf_shader *shader)
 {
     VkPipeline *handles = calloc(gpu->pipelines_made + 1, sizeof *handles);
@@ -323,16 +383,19 @@ enum sf_status sf_pipelines_remake(struct sf_gpu *gpu, const struct sf_shader *s
     if (!handles)
         return sf_fail(gpu->log, SF_ERROR_MEMORY, "no memory for the pipelines of the shader '%s'", shader->name);
     for (size_t i = 0; i < gpu->pipelines_made && !status; i++)
-        if (gpu->pipelines[i]->key.shader == shader || gpu->pipelines[i]->key.fragment == shader)
-            status = create_handle(gpu->pipelines[i], &handles[i]);
-    for (size_t i = 0; i < gpu->pipelines_made; i++) {
+        if (runs(gpu->pipelines[i], shader))
+            status = remake(gpu->pipelines[i], shader, &handles[i]);
+    for (size_t i = gpu->pipelines_made; i-- > 0;) { /* from the back: what is dropped moves those behind it */
+        struct sf_pipeline *pipeline = gpu->pipelines[i];
         VkPipeline unwanted = handles[i];
 
         if (unwanted && !status) {
-            unwanted = gpu->pipelines[i]->handle;
-            gpu->pipelines[i]->handle = handles[i];
+            unwanted = pipeline->handle;
+            pipeline->handle = handles[i];
         }
         gpu->vk.vkDestroyPipeline(gpu->device, unwanted, NULL);
+        if (!status && pipeline->users == 0 && runs(pipeline, shader))
+            drop(gpu, i);
     }
     free(handles);
     return status;

@@ -68,6 +68,9 @@ void sf_player_destroy(struct sf_player **pointer)
     for (uint32_t i = 0; player->timers && i < player->depth; i++)
         sf_timer_finish(player->gpu, &player->timers[i]);
     sf_player_unplace(player);
+    for (uint32_t i = 0; i < player->step_count; i++)
+        sf_pipeline_give_back(player->steps[i].pipeline);
+    sf_pipelines_trim(player->gpu);
     sf_arena_finish(&player->arena);
     free(player);
     *pointer = NULL;

@@ -39,7 +39,7 @@ struct sf_object {
 struct sf_step {
     const struct sf_plan_pass *plan;
     const struct sf_pass_desc *desc;
-    struct sf_pipeline *pipeline; /* NULL: transfer */
+    struct sf_pipeline *pipeline; /* taken, given back when the player goes; NULL: transfer */
     uint32_t set;                 /* index into the play's descriptor sets */
     uint32_t first_barrier;       /* number over the whole plan */
     const struct sf_plan_use *colors[SF_PASS_COLORS_MAX], *depth;

@@ -220,13 +220,20 @@ enum sf_status sf_player_prepare(struct sf_player *player)
             prepare_writes(player, step);
         }
     }
-    if (status) {
+    if (status)
         sf_pipelines_forget(player->gpu);
-        return status;
+    else
+        status = sf_pipelines_build(player->gpu);
+    for (uint32_t i = 0; i < player->step_count; i++) {
+        struct sf_step *step = &player->steps[i];
+
+        if (status) {
+            step->pipeline = NULL; /* not taken, and a new one is gone */
+            continue;
+        }
+        sf_pipeline_take(step->pipeline);
+        if (step->set != SF_NO_SET)
+            player->set_layouts[step->set] = step->pipeline->set_layout;
     }
-    status = sf_pipelines_build(player->gpu);
-    for (uint32_t i = 0; i < player->step_count && !status; i++)
-        if (player->steps[i].set != SF_NO_SET)
-            player->set_layouts[player->steps[i].set] = player->steps[i].pipeline->set_layout;
     return status;
 }

@@ -138,16 +138,29 @@ struct sf_pipeline {
     VkPipeline handle;
     VkShaderStageFlags stages;
     struct sf_gpu *gpu;
-    const char *pass; /* that wanted it first: a name for messages, until it is made */
+    const char *pass;      /* that wanted it first: a name for messages, until it is made */
+    uint32_t users;        /* steps of players */
+    uint64_t unused_since; /* while there are none: orders those that lost their last */
 };
+/* Pipelines that the device keeps though no player uses them. A scene with everything in it has less than 30, so what
+ * the last two left is found again by somebody who goes to and fro between scenes, or between values of a parameter
+ * that is compiled in. Who drags such a parameter through all its values leaves no more than this behind: the largest
+ * pipelines hold 1.4 MB each in lavapipe, 90 MB together. */
+enum { SF_PIPELINES_UNUSED_MAX = 64 };
 /* Pipelines are the device's: players that need the same one share it, and a graph that is built anew finds its old
  * ones. One that was not there before is made by the next sf_pipelines_build, and `pass` must live until then. */
 enum sf_status sf_pipeline_request(struct sf_gpu *gpu, const char *pass, const struct sf_pipeline_key *key,
                                    struct sf_pipeline **pipeline);
 /* Makes what was requested, on several threads. When one fails, none of the new ones remain. */
 enum sf_status sf_pipelines_build(struct sf_gpu *gpu);
-/* Makes the pipelines that use the shader anew, in place, while the device uses none of them. When one fails, all stay
- * as they are. */
+/* Between these two, the player's step may use the pipeline, and it stays; NULL is none. */
+void sf_pipeline_take(struct sf_pipeline *pipeline);
+void sf_pipeline_give_back(struct sf_pipeline *pipeline);
+/* Drops the pipelines that have been unused for longest, until SF_PIPELINES_UNUSED_MAX unused ones are left. Only after
+ * sf_gpu_settle. */
+void sf_pipelines_trim(struct sf_gpu *gpu);
+/* Makes the pipelines that use the shader anew, in place, while the device uses none of them; those that no player uses
+ * are dropped. When one fails or would not fit, all stay as they are. */
 enum sf_status sf_pipelines_remake(struct sf_gpu *gpu, const struct sf_shader *shader);
 /* Drops what was requested and not made. */
 void sf_pipelines_forget(struct sf_gpu *gpu);
@@ -312,6 +325,7 @@ struct sf_gpu {
     struct sf_pipeline **pipelines;
     size_t pipeline_count, pipeline_capacity;
     size_t pipelines_made;     /* the others were requested */
+    uint64_t pipelines_left;   /* how often a pipeline lost its last user */
     struct sf_shader *shaders; /* [as sf_shaders] with words where others took the library's place; NULL: nowhere */
 
     struct sf_frame_slot slots[SF_FRAMES_IN_FLIGHT];
