@@ -66,6 +66,8 @@ void sf_view_open(struct sf_view *view, const char *path)
 
     if (sf_model_replace(&view->model, path))
         return;
+    if (sf_shots_recording(view->shots)) /* its frames are of the scene before */
+        sf_view_record(view);
     sf_rig_release(&view->rig);
     sf_playback_init(&view->playback, view->model.info.fps);
     view->playback.playing = playing;
@@ -93,6 +95,10 @@ void sf_view_look(struct sf_view *view, const char *name)
 
 void sf_view_shot(struct sf_view *view)
 {
+    if (sf_shots_recording(view->shots)) {
+        sf_view_note(view, SF_LOG_INFO, "no screenshot: every picture is being recorded");
+        return;
+    }
     view->shot = true;
     view->settle = true;
 }

@@ -372,6 +372,14 @@ static void take_key(struct sf_view *view, const struct sf_key *key)
     }
 }
 
+/* Keys that a field which is typed in has no use for. */
+static bool is_command(const struct sf_key *key)
+{
+    if (key->mods & GLFW_MOD_CONTROL)
+        return key->key == GLFW_KEY_Q || key->key == GLFW_KEY_S || key->key == GLFW_KEY_F;
+    return key->key >= GLFW_KEY_F1 && key->key <= GLFW_KEY_F12;
+}
+
 void sf_input_take(struct sf_view *view, double seconds)
 {
     struct sf_key key;
@@ -379,7 +387,7 @@ void sf_input_take(struct sf_view *view, double seconds)
 
     while (sf_screen_key(view->screen, &key)) {
         view->input_ns = view->input_ns ? view->input_ns : key.born_ns;
-        if (!sf_ui_takes_keys())
+        if (!sf_ui_takes_keys() || is_command(&key))
             take_key(view, &key);
     }
     take_mouse(view);

@@ -109,7 +109,7 @@ void sf_panel_notes(struct sf_view *view)
     unsigned count = standing(view, notes);
     float margin = 10 * sf_ui_scale(), width = view->picture[2] - 2 * margin;
 
-    if ((count == 0 && !broken[0] && !view->model.error[0]) || width < 20 * margin)
+    if (!view->panels || (count == 0 && !broken[0] && !view->model.error[0]) || width < 20 * margin)
         return;
     if (sf_ui_panel_begin("notes", view->picture[0] + margin, view->picture[1] + margin, width, 0,
                           SF_UI_FIXED | SF_UI_UNTITLED | SF_UI_QUIET, NULL)) {
@@ -120,7 +120,8 @@ void sf_panel_notes(struct sf_view *view)
         if (broken[0])
             sf_ui_text_wrapped(sf_ui_error, broken);
         for (unsigned i = 0; i < count; i++)
-            sf_ui_text_wrapped(*colors[notes[i].level], notes[i].text);
+            if (strncmp(notes[i].text, view->model.error, SF_NOTE_BYTES - 1) != 0) /* else it stands there already */
+                sf_ui_text_wrapped(*colors[notes[i].level], notes[i].text);
     }
     sf_ui_panel_end();
 }

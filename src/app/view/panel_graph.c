@@ -308,7 +308,7 @@ static void draw_legend(void)
     for (size_t i = 0; i < sizeof marks / sizeof *marks; i++) {
         sf_ui_draw_circle(x + 5 * scale, y + 9 * scale, 3.5f * scale, *marks[i].color, marks[i].filled);
         sf_ui_draw_text(x + 12 * scale, y + scale, sf_ui_dim, marks[i].name);
-        x += sf_ui_text_width(marks[i].name) + 23 * scale;
+        x += sf_ui_text_width(marks[i].name) + 20 * scale;
     }
 }
 

@@ -69,6 +69,22 @@ static float drag_speed(const struct sf_control *control)
     return (float)fmax(size, fmin(1, (control->max - control->min) * 0.01)) * 0.01f;
 }
 
+/* Typed: a float, as ImGui drags, would lose the last digits of a seed. What is no number leaves the value. */
+static bool type_whole(struct sf_control *control)
+{
+    char digits[32], *end;
+    bool changed;
+    double typed;
+
+    snprintf(digits, sizeof digits, "%.0f", control->value[0]);
+    changed = sf_ui_input("##value", "", digits, sizeof digits);
+    typed = strtod(digits, &end);
+    if (!changed || end == digits || *end || isnan(typed))
+        return false;
+    control->value[0] = rint(fmin(fmax(typed, control->min), control->max));
+    return true;
+}
+
 static bool edit_number(struct sf_control *control, const char *format)
 {
     bool narrow = control->max - control->min <= SLIDER_SPAN, changed;
@@ -81,12 +97,14 @@ static bool edit_number(struct sf_control *control, const char *format)
         control->value[0] = whole;
         return changed;
     }
+    if (control->kind == SF_CONTROL_INT)
+        return type_whole(control);
     if (narrow)
         changed = sf_ui_slider("##value", &value, (float)control->min, (float)control->max, format, false);
     else
         changed =
             sf_ui_drag("##value", &value, 1, drag_speed(control), (float)control->min, (float)control->max, format);
-    control->value[0] = control->kind == SF_CONTROL_INT ? (double)lrint((double)value) : (double)value;
+    control->value[0] = (double)value;
     return changed;
 }
 
@@ -179,7 +197,7 @@ static void set_type(struct sf_view *view, const struct sf_control *control, con
 
 static void draw_control(struct sf_view *view, const struct sf_control *control)
 {
-    bool changed = sf_model_changed(&view->model, control->path), apply;
+    bool changed = sf_model_changed(&view->model, control->path), reset = false, apply;
     float room = sf_ui_room(), rectangle[4];
     struct sf_control copy = *control;
     char text[TEXT_BYTES], *assignment;
@@ -202,12 +220,13 @@ static void draw_control(struct sf_view *view, const struct sf_control *control)
     }
     if (changed) {
         sf_ui_same_line(0);
-        if (sf_ui_small_button("x"))
-            sf_view_reset(view, control->path);
+        reset = sf_ui_small_button("x");
         sf_ui_tooltip("as in the file");
     }
     sf_ui_id_pop();
-    if (!apply)
+    if (reset) /* the controls are made anew: `copy` is stale */
+        sf_view_reset(view, control->path);
+    if (!apply || reset)
         return;
     assignment = sf_control_print(&copy);
     if (assignment && copy.kind == SF_CONTROL_CHOICE && strcmp(copy.key, "type") == 0)
@@ -224,16 +243,35 @@ static size_t section_of(const struct sf_control *control, char *name, size_t ro
     return strlen(name);
 }
 
-static void draw_controls(struct sf_view *view)
+/* What one turns most stands first: the smoke and how it is drawn, where it comes from, its light; then the stage. */
+enum { PLACES = 12 };
+static unsigned place_of(const struct sf_control *control)
+{
+    static const char *const names[PLACES - 1] = {"medium", "ramp",   "thick",       "emitters", "forces", "sim",
+                                                  "lights", "shadow", "environment", "output",   "camera"};
+    unsigned place = 0;
+
+    while (place < PLACES - 1) {
+        size_t length = strlen(names[place]);
+
+        if (strncmp(control->group, names[place], length) == 0 && strchr(".", control->group[length]))
+            break;
+        place++;
+    }
+    return place;
+}
+
+/* The sections of one place. A change makes the array anew: the rest is drawn of the new one all the same, or the panel
+ * would be shorter in this turn, and scroll. */
+static void draw_place(struct sf_view *view, unsigned place)
 {
     char section[SF_NAME_BYTES] = "", name[SF_NAME_BYTES + 8];
     bool open = false, searching = view->search[0] != '\0';
 
-    /* A change makes the array anew: nothing of it is used after one, in this turn. */
     for (uint32_t i = 0; i < view->model.control_count; i++) {
-        const struct sf_control *controls = view->model.controls, *control = &controls[i];
+        const struct sf_control *control = &view->model.controls[i];
 
-        if (!wanted(view, control))
+        if (place_of(control) != place || !wanted(view, control))
             continue;
         section_of(control, name, SF_NAME_BYTES);
         if (strcmp(name, section) != 0) {
@@ -244,14 +282,12 @@ static void draw_controls(struct sf_view *view)
         }
         if (open)
             draw_control(view, control);
-        if (view->model.controls != controls)
-            break;
     }
 }
 
 void sf_panel_parameters(struct sf_view *view)
 {
-    sf_ui_width(-8 * sf_ui_line() / 2);
+    sf_ui_width(-2.75f * sf_ui_line());
     if (sf_ui_search("##search", "search (Ctrl+F)", view->search, sizeof view->search, view->focus_search))
         view->said_place = false;
     view->focus_search = false;
@@ -262,6 +298,7 @@ void sf_panel_parameters(struct sf_view *view)
     sf_ui_enable();
     sf_ui_tooltip("every parameter as in the file (Ctrl+Z)");
     if (sf_ui_child_begin("controls", 0))
-        draw_controls(view);
+        for (unsigned place = 0; place < PLACES; place++)
+            draw_place(view, place);
     sf_ui_child_end();
 }

@@ -66,9 +66,8 @@ static void list_recent(struct sf_view *view)
 {
     char open[PATH_BYTES] = "";
 
-    for (int i = 0; i < SF_RECENT_MAX && view->settings.recent[i]; i++)
-        if (strcmp(view->settings.recent[i], view->model.path) != 0 &&
-            sf_ui_selectable(view->settings.recent[i], false))
+    for (int i = 1; i < SF_RECENT_MAX && view->settings.recent[i]; i++) /* the first one is open */
+        if (sf_ui_selectable(view->settings.recent[i], false))
             snprintf(open, sizeof open, "%s", view->settings.recent[i]);
     if (open[0])
         sf_view_open(view, open);
@@ -86,7 +85,7 @@ static void draw_scene(struct sf_view *view)
     if (view->settings.recent[1] && sf_ui_section("Recent", false))
         list_recent(view);
     if (sf_ui_section("Save and copy", true)) {
-        sf_ui_width(-4 * sf_ui_line());
+        sf_ui_width(-2 * sf_ui_line());
         sf_ui_search("##path", "file", view->save_path, sizeof view->save_path, false);
         sf_ui_same_line(0);
         if (sf_ui_button("save") && view->save_path[0])
@@ -117,9 +116,8 @@ static void draw_presets(struct sf_view *view)
         if (sf_ui_small_button(label) && sf_rig_recall(&view->rig, i))
             moved(view);
         sf_ui_enable();
+        sf_ui_tooltip("a camera of yours (%u); Ctrl+%u stores this one there", i + 1, i + 1);
     }
-    sf_ui_same_line(0);
-    sf_ui_text_color(sf_ui_dim, "Ctrl+1 to 9 stores");
 }
 
 static void draw_camera(struct sf_view *view)
@@ -130,7 +128,7 @@ static void draw_camera(struct sf_view *view)
     sf_ui_text("%s", view->rig.own ? "yours" : "the scene's");
     sf_ui_same_line(0);
     sf_ui_disable(!view->rig.own);
-    if (sf_ui_small_button("the scene's again")) {
+    if (sf_ui_small_button("back to the scene's")) {
         sf_rig_release(&view->rig);
         moved(view);
     }

@@ -44,8 +44,9 @@ static enum sf_status land(struct sf_view *view)
     view->landed_ns = now;
     if (view->looking.name[0] && strcmp(view->looking.name, view->inspected) == 0)
         sf_looking_take(&view->looking, &frame);
-    if (sf_shots_recording(view->shots) && view->options.returned)
-        return sf_picture_store(view, &frame);
+    /* A frame that cannot be kept (it has been said why) ends the recording, not the viewer. */
+    if (sf_shots_recording(view->shots) && view->options.returned && sf_picture_store(view, &frame) != SF_OK)
+        sf_view_record(view);
     return SF_OK;
 }
 
@@ -71,12 +72,18 @@ enum sf_status sf_picture_store(struct sf_view *view, const struct sf_frame *fra
 
 static struct sf_renderer_options wanted_options(const struct sf_view *view)
 {
-    return (struct sf_renderer_options){.width = (uint32_t)view->picture[2],
-                                        .height = (uint32_t)view->picture[3],
+    const struct sf_renderer_options *has = &view->options;
+    uint32_t width = (uint32_t)view->picture[2], height = (uint32_t)view->picture[3];
+    bool recording = sf_shots_recording(view->shots);
+    /* Frames of a sequence are all as large as its first; meanwhile they are shown stretched. */
+    bool keep = (recording && has->returned) || (view->refused[0] == width && view->refused[1] == height);
+
+    return (struct sf_renderer_options){.width = keep ? has->width : width,
+                                        .height = keep ? has->height : height,
                                         .timing = true,
                                         .frames_kept = SF_FLIGHT + 1,
                                         .shown = true,
-                                        .returned = sf_shots_recording(view->shots),
+                                        .returned = recording,
                                         .inspect = view->looking.name[0] ? view->looking.name : NULL};
 }
 
@@ -105,25 +112,26 @@ static enum sf_status set_options(struct sf_view *view, const struct sf_renderer
     return SF_OK;
 }
 
-/* A size that the device cannot take, or an image that another method does not have, is no reason to stop. */
+/* An image that another method does not have, a size that the device cannot take, or no memory for a recording is no
+ * reason to stop: the first of them that is new is given up. */
 static enum sf_status update_options(struct sf_view *view)
 {
     struct sf_renderer_options wanted = wanted_options(view);
-    enum sf_status status;
+    enum sf_status status = same_options(view, &wanted) ? SF_OK : set_options(view, &wanted);
 
-    if (same_options(view, &wanted) || (view->refused[0] == wanted.width && view->refused[1] == wanted.height))
-        return SF_OK;
-    status = set_options(view, &wanted);
-    if (status == SF_ERROR_USAGE && wanted.inspect) {
+    if (status != SF_ERROR_USAGE && status != SF_ERROR_MEMORY)
+        return status;
+    if (wanted.inspect && strcmp(wanted.inspect, view->inspected) != 0) {
         sf_view_look(view, "");
-        return update_options(view);
-    }
-    if (status == SF_ERROR_USAGE || status == SF_ERROR_MEMORY) {
+    } else if (wanted.width != view->options.width || wanted.height != view->options.height) {
         view->refused[0] = wanted.width;
         view->refused[1] = wanted.height;
-        return SF_OK;
+    } else if (wanted.returned && !view->options.returned) {
+        sf_view_record(view);
+    } else {
+        return status;
     }
-    return status;
+    return update_options(view);
 }
 
 /* ---- scenes ---- */
@@ -161,6 +169,7 @@ enum sf_status sf_picture_accept(void *user, const struct sf_scene *scene)
     if (status)
         return status;
     drop_coarse(view);
+    view->refused[0] = view->refused[1] = 0; /* what another scene needs is another matter */
     sf_scene_describe(scene, &info);
     view->playback.fps = info.fps;
     return SF_OK;
@@ -300,6 +309,8 @@ static enum sf_status shoot(struct sf_view *view)
     wanted.returned = true;
     if (!status)
         status = set_options(view, &wanted);
+    if (status == SF_ERROR_MEMORY) /* it has been said; everything is as it was */
+        return SF_OK;
     if (!status)
         status = draw(view, &flight);
     if (!status)
@@ -318,13 +329,15 @@ enum sf_status sf_picture_update(struct sf_view *view, bool *drawn)
     *drawn = false;
     if (!status)
         status = govern(view);
-    if (status || !(view->dirty || view->shot || view->playback.frame != view->drawn_frame))
+    /* A way that was begun is gone to its end, also when that is the frame drawn last: the simulation has left it. */
+    if (status || !(view->dirty || view->shot || view->seek_total > 0 || view->playback.frame != view->drawn_frame))
         return status;
     status = go_to(view, view->playback.frame, &there);
     if (status || !there)
         return status;
     if (view->shot && !sf_shots_recording(view->shots))
         return shoot(view);
+    view->shot = false; /* a recording has the picture already */
     status = sf_picture_collect(view, SF_FLIGHT - 1);
     if (!status)
         status = draw(view, &view->flights[view->flight_count]);

@@ -119,8 +119,7 @@ static void draw_panels(struct sf_view *view, uint32_t width, uint32_t height)
     }
     sf_input_draw_lights(view);
     sf_panel_looked(view);
-    if (view->panels)
-        sf_panel_notes(view);
+    sf_panel_notes(view);
     sf_panel_keys(view);
 }
 
@@ -133,8 +132,6 @@ static void watch_files(struct sf_view *view)
     sf_model_watch(&view->model, &renewed);
     if (view->reload)
         sf_reload_poll(view->reload, sf_now_ns(), &compiled);
-    if (renewed)
-        sf_view_opened(view);
     view->dirty = view->dirty || compiled;
     view->settle = view->settle || renewed || compiled;
 }
@@ -330,11 +327,13 @@ static void take_settings(struct sf_view *view)
 static void keep_settings(struct sf_view *view)
 {
     struct sf_settings *settings = &view->settings;
+    bool fullscreen = sf_screen_fullscreen(view->screen);
     uint32_t width, height;
 
-    settings->fullscreen = sf_screen_fullscreen(view->screen);
+    if (!fullscreen || !view->arguments->fullscreen)
+        settings->fullscreen = fullscreen;
     sf_screen_size(view->screen, &width, &height);
-    if (!settings->fullscreen && width > 0) {
+    if (!fullscreen && width > 0) {
         float scale = sf_screen_scale(view->screen);
 
         settings->width = (uint32_t)((float)width / scale);
@@ -488,11 +487,13 @@ enum sf_status sf_view_run(const struct sf_arguments *arguments)
         status = write_report(view);
     if (!status)
         status = sf_session_validated(arguments, view->device);
+    if (!status && sf_interrupted())
+        status = SF_ERROR_INTERRUPTED;
     errors = sf_console_errors();
     close_all(view);
     free(view);
     /* Objects that were left behind are found when the device goes. */
-    if (!status && arguments->validate && sf_console_errors() > errors)
+    if ((!status || status == SF_ERROR_INTERRUPTED) && arguments->validate && sf_console_errors() > errors)
         status = SF_ERROR_INTERNAL;
     return status;
 }
