@@ -11,7 +11,9 @@ shot plain.png $part
 # Ctrl+F, a name, and the first control found stands where the viewer says.
 key ctrl+f
 sleep 0.3
-xdotool type --delay 60 'medium.extinction'
+xdotool type --delay 60 'medium.extinctionx'
+sleep 0.2
+xdotool mousemove_relative 1 1 key --delay 0 BackSpace # let go while a picture is shown: not lost
 expect_said 10 'control medium.extinction'
 set -- $(sed -n 's/.*control medium.extinction \(.*\)$/\1/p' err | tail -n 1)
 x=$(($1 + $3 / 4)) y=$(($2 + $4 / 2))
@@ -71,7 +73,19 @@ key l
 key Right Right Right
 steady
 shot lit.png
+shot lit-cropped.png $part
 differ scene.png lit.png "a light that was turned"
+
+# A frame back and on again, before the way back is gone: it comes to rest, where it was.
+xdotool key --delay 1 comma period
+steady
+ticks() { awk '{ print $14 + $15 }' "/proc/$view/stat"; }
+before=$(ticks)
+sleep 1
+used=$(($(ticks) - before))
+[ "$used" -lt 40 ] || fail "at rest it takes $used ticks of the processor in a second"
+shot again.png $part
+same lit-cropped.png again.png 0 "a frame back and on again"
 finish
 [ "$(figure frame)" -eq 32 ] || fail "frame $(figure frame), not 32"
 [ "$(figure inputs)" -gt 10 ] || fail "only $(figure inputs) inputs were answered"
@@ -89,4 +103,13 @@ sleep 2
 key space
 finish
 [ "$(figure frame)" -gt 10 ] || fail "two seconds of playing came to frame $(figure frame)"
+
+# Told to end, it closes in order and says so.
+start "$scene" -s 200x150 --bare
+kill -TERM "$view"
+wait "$view"
+code=$?
+view=
+[ "$code" -eq 130 ] || fail "exit code $code after SIGTERM, not 130"
+! grep -q 'validation' err || { fail "the validation layers speak"; cat err; }
 done_testing

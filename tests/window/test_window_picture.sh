@@ -32,10 +32,14 @@ same copied.png shots/plume.0042.png 0 "the screenshot against the copied comman
 same shots/plume.0042.png shots/plume.0042-2.png 0 "a screenshot and the next"
 exists shots/plume.0042.exr
 
-# A recording holds each frame once.
+# A recording holds each frame once, all of one size.
 key r
 expect_said 10 'shots/plume-001'
-sleep 2
+sleep 1
+key p
+expect_said 5 'no screenshot'
+xdotool windowsize "$window" 260 200
+sleep 1
 key r
 expect_said 5 'recorded '
 key space
@@ -46,5 +50,7 @@ first=$(find shots/plume-001 -name '*.png' | sort | head -n 1)
 last=$(find shots/plume-001 -name '*.png' | sort | tail -n 1)
 number() { echo "$1" | sed 's/.*[.\/]\([0-9]*\)\.png/\1/; s/^0*\([0-9]\)/\1/'; }
 [ $(($(number "$last") - $(number "$first") + 1)) -eq "$recorded" ] || fail "frames are missing: $(ls shots/plume-001)"
+sizes=$(find shots/plume-001 -name '*.png' -exec identify -format '%wx%h\n' {} + | sort -u)
+[ "$sizes" = 320x240 ] || fail "recorded sizes: $sizes"
 [ "$(find shots/plume-001 -name '*.exr' | wc -l)" -eq "$recorded" ] || fail "not as many EXR files as PNG"
 done_testing

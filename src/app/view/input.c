@@ -372,6 +372,16 @@ static void take_key(struct sf_view *view, const struct sf_key *key)
     }
 }
 
+void sf_input_feed(const struct sf_view *view, const struct sf_key *keys, unsigned count, bool pressed)
+{
+    for (unsigned i = 0; i < count; i++) {
+        int mods = pressed ? keys[i].mods : sf_screen_mods(view->screen);
+
+        sf_ui_feed_key(keys[i].key, pressed || sf_screen_held(view->screen, keys[i].key), mods & GLFW_MOD_CONTROL,
+                       mods & GLFW_MOD_SHIFT);
+    }
+}
+
 /* Keys that a field which is typed in has no use for. */
 static bool is_command(const struct sf_key *key)
 {

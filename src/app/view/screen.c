@@ -10,14 +10,14 @@
 #include "../console.h"
 #include "surface.h"
 
-enum { KEYS = 64, DROPPED = 16, REASON_BYTES = 256 };
+enum { DROPPED = 16, REASON_BYTES = 256 };
 
 struct sf_screen {
     GLFWwindow *window;
     const struct sf_log *log;
     struct sf_surface_source surface;
     bool happened;
-    struct sf_key keys[KEYS]; /* a ring: the oldest at `first` */
+    struct sf_key keys[SF_KEYS_MAX]; /* a ring: the oldest at `first` */
     unsigned first, count;
     char *dropped[DROPPED];
     unsigned dropped_count;
@@ -47,9 +47,9 @@ static void on_key(GLFWwindow *window, int key, int scancode, int action, int mo
     struct sf_screen *screen = screen_of(window);
 
     (void)scancode;
-    if (action == GLFW_RELEASE || screen->count == KEYS)
+    if (action == GLFW_RELEASE || key == GLFW_KEY_UNKNOWN || screen->count == SF_KEYS_MAX)
         return;
-    screen->keys[(screen->first + screen->count++) % KEYS] = (struct sf_key){key, mods, sf_now_ns()};
+    screen->keys[(screen->first + screen->count++) % SF_KEYS_MAX] = (struct sf_key){key, mods, sf_now_ns()};
 }
 
 static void on_drop(GLFWwindow *window, int count, const char **paths)
@@ -270,9 +270,16 @@ bool sf_screen_key(struct sf_screen *screen, struct sf_key *key)
     if (screen->count == 0)
         return false;
     *key = screen->keys[screen->first];
-    screen->first = (screen->first + 1) % KEYS;
+    screen->first = (screen->first + 1) % SF_KEYS_MAX;
     screen->count--;
     return true;
+}
+
+unsigned sf_screen_keys(const struct sf_screen *screen, struct sf_key keys[SF_KEYS_MAX])
+{
+    for (unsigned i = 0; i < screen->count; i++)
+        keys[i] = screen->keys[(screen->first + i) % SF_KEYS_MAX];
+    return screen->count;
 }
 
 bool sf_screen_held(const struct sf_screen *screen, int key)

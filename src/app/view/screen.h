@@ -33,7 +33,10 @@ struct sf_key {
     int key, mods;
     uint64_t born_ns;
 };
+enum { SF_KEYS_MAX = 64 };                                        /* that wait to be taken; more are dropped */
 bool sf_screen_key(struct sf_screen *screen, struct sf_key *key); /* the oldest press or repeat; false: none */
+/* Copies those that wait, without taking them; how many. */
+unsigned sf_screen_keys(const struct sf_screen *screen, struct sf_key keys[SF_KEYS_MAX]);
 bool sf_screen_held(const struct sf_screen *screen, int key);
 int sf_screen_mods(const struct sf_screen *screen); /* held: GLFW_MOD_SHIFT and so on */
 

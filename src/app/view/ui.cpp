@@ -290,11 +290,11 @@ bool sf_ui_mouse_double(int button) { return ImGui::IsMouseDoubleClicked(button)
 void sf_ui_raw_size(float size[2]) { size[0] = io().DisplaySize.x; size[1] = io().DisplaySize.y; }
 void sf_ui_feed_size(uint32_t width, uint32_t height) { io().DisplaySize = ImVec2((float)width, (float)height); }
 void sf_ui_feed_mouse(float x, float y, bool down) { io().MousePos = ImVec2(x, y); io().MouseDown[0] = down; }
+void sf_ui_feed_key(int key, bool down, bool control, bool shift)
+{ io().KeysDown[key] = down; io().KeyCtrl = control; io().KeyShift = shift; }
 void sf_ui_feed_text(const char *text)
 {
     io().AddInputCharactersUTF8(text);
-    for (; *text; text++)
-        if (*text > 0 && *text < ' ')
-            io().KeysDown[(int)*text] = true;
+    for (; *text; text++) if (*text > 0 && *text < ' ') io().KeysDown[(int)*text] = true;
 }
 /* clang-format on */

@@ -137,6 +137,10 @@ bool sf_ui_mouse_down(int button); /* 0 left, 1 right, 2 middle */
 bool sf_ui_mouse_clicked(int button);
 bool sf_ui_mouse_double(int button);
 
+/* A key as the window numbers it, before begin, for what was pressed and let go since the last one (ImGui sees only what
+ * is held when a frame begins, and slow frames would lose keys); after end, as it is now. */
+void sf_ui_feed_key(int key, bool down, bool control, bool shift);
+
 /* ---- without a window: for tests ---- */
 void sf_ui_feed_size(uint32_t width, uint32_t height);
 void sf_ui_feed_mouse(float x, float y, bool down);

@@ -204,6 +204,8 @@ static double rest(const struct sf_view *view, unsigned awake, bool minimised)
 static enum sf_status draw_turn(struct sf_view *view, double seconds)
 {
     struct sf_window_options options = {.present_mode = view->settings.present_mode};
+    struct sf_key keys[SF_KEYS_MAX];
+    unsigned key_count = sf_screen_keys(view->screen, keys);
     struct sf_overlay overlay;
     bool drawn = false;
     enum sf_status status;
@@ -215,10 +217,12 @@ static enum sf_status draw_turn(struct sf_view *view, double seconds)
     place(view, options.width, options.height);
     pass_time(view);
     view->settle = false;
+    sf_input_feed(view, keys, key_count, true);
     sf_ui_begin(view->ui);
     draw_panels(view, options.width, options.height);
     sf_input_take(view, seconds);
     sf_ui_end(view->ui, &overlay);
+    sf_input_feed(view, keys, key_count, false);
     status = sf_picture_update(view, &drawn);
     if (!status)
         status = show(view, &overlay);

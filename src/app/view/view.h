@@ -130,6 +130,8 @@ enum sf_status sf_view_run(const struct sf_arguments *arguments);
 
 /* ---- input.c: keys and the mouse in the picture, after the panels have been drawn ---- */
 void sf_input_take(struct sf_view *view, double seconds);
+/* Shows the panels keys that may have been let go already; after the frame, how they are now. */
+void sf_input_feed(const struct sf_view *view, const struct sf_key *keys, unsigned count, bool pressed);
 /* Lights' handles over the picture. */
 void sf_input_draw_lights(struct sf_view *view);
 
