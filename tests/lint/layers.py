@@ -14,6 +14,7 @@ ALLOWED = {
     "gpu": {"base", "graph"},
     "sim": {"base", "params", "scene", "graph", "gpu"},
     "light": {"base", "params", "scene", "graph", "gpu"},
+    "truth": {"base", "params", "scene"},
     "methods": {"base", "params", "scene", "graph", "gpu", "sim", "light"},
     "render": {"base", "params", "scene", "graph", "gpu", "sim", "light", "methods", "output"},
     "app": set(),
