@@ -11,9 +11,7 @@ shot plain.png $part
 # Ctrl+F, a name, and the first control found stands where the viewer says.
 key ctrl+f
 sleep 0.3
-xdotool type --delay 60 'medium.extinctionx'
-sleep 0.2
-xdotool mousemove_relative 1 1 key --delay 0 BackSpace # let go while a picture is shown: not lost
+xdotool type --delay 60 'medium.extinction'
 expect_said 10 'control medium.extinction'
 set -- $(sed -n 's/.*control medium.extinction \(.*\)$/\1/p' err | tail -n 1)
 x=$(($1 + $3 / 4)) y=$(($2 + $4 / 2))

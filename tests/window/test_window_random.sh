@@ -1,5 +1,6 @@
 #!/bin/sh
-# 2,000 pictures of random input and sizes: memory stays flat, and nothing breaks.
+# 2,000 times shown under random input and sizes, panels included: memory stays flat but for the pipelines that are kept (a bounded number),
+# and nothing breaks.
 . "$SF_SOURCE_ROOT/tests/window/lib.sh"
 scene=$SF_SOURCE_ROOT/scenes/tiny/all.json
 [ -n "${SEED:-}" ] || SEED=7
@@ -22,7 +23,7 @@ while kill -0 "$view" 2>/dev/null && [ $turn -lt 400 ]; do
         for (i = 0; i < 12; i++) {
             what = int(rand() * 6)
             x = int(rand() * 300); y = int(rand() * 220)
-            if (what == 0) print "windowsize " window " " 1 + int(rand() * 420) " " 1 + int(rand() * 320)
+            if (what == 0) print "windowsize " window " " 1 + int(rand() * 640) " " 1 + int(rand() * 420)
             else if (what == 1) print "key " keys[1 + int(rand() * 23)]
             else if (what == 2) print "mousemove --window " window " " x " " y " mousedown 1 mousemove_relative -- " int(rand() * 80 - 40) " " int(rand() * 80 - 40) " mouseup 1"
             else if (what == 3) print "mousemove --window " window " " x " " y " click 4"
@@ -45,5 +46,5 @@ view=
 ! grep -q 'validation' err || { fail "the validation layers speak"; grep -m 5 validation err; }
 [ "$(figure shown)" -ge 2000 ] || fail "shown only $(figure shown) times"
 echo "resident ${start_kib:-?} KiB after 50 rounds, ${end_kib:-?} KiB at the end; $(figure pictures) pictures, $(figure remade) swapchains, $turn rounds"
-[ -n "$start_kib" ] && [ $((end_kib - start_kib)) -lt 20000 ] || fail "memory grew from ${start_kib:-?} to ${end_kib:-?} KiB"
+[ -n "$start_kib" ] && [ $((end_kib - start_kib)) -lt 40000 ] || fail "memory grew from ${start_kib:-?} to ${end_kib:-?} KiB"
 done_testing

@@ -16,7 +16,7 @@
 
 static const double WATCH_S = 0.25;    /* how long it sleeps at most, so that edited files are seen */
 static const double MINIMISED_S = 0.5; /* and while there is nothing to see */
-static const uint32_t SIDE_LEAST = 64; /* px of picture beside the panel, or there is no panel */
+static const uint32_t SIDE_LEAST = 160; /* px of picture beside the panel, or there is no panel */
 enum { BARE_PIXELS = 240, TURNS_AWAKE = 3 };
 
 /* ---- messages ---- */
