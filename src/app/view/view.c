@@ -14,8 +14,8 @@
 #include "../session.h"
 #include "graph_data.h"
 
-static const double WATCH_S = 0.25;    /* how long it sleeps at most, so that edited files are seen */
-static const double MINIMISED_S = 0.5; /* and while there is nothing to see */
+static const double WATCH_S = 0.25;     /* how long it sleeps at most, so that edited files are seen */
+static const double MINIMISED_S = 0.5;  /* and while there is nothing to see */
 static const uint32_t SIDE_LEAST = 160; /* px of picture beside the panel, or there is no panel */
 enum { BARE_PIXELS = 240, TURNS_AWAKE = 3 };
 
