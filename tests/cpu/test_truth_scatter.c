@@ -76,6 +76,26 @@ static void test_white_furnace(void **state)
     sf_scene_destroy(&scene);
 }
 
+/* Smoke that takes light and glows as much as it takes cannot be seen either. Its paths are faint from the second meeting on. */
+static void test_grey_furnace(void **state)
+{
+    struct sf_scene *scene = parse("{\"environment\": {\"type\": \"color\", \"color\": [1, 1, 1]}, \"medium\": "
+                                   "{\"albedo\": [0.3, 0.3, 0.3], \"emission\": [0.7, 0.7, 0.7], \"g\": 0.3}}");
+    const struct sf_particle ball = ball_at(0, 0, 0, 1, 20);
+    const double o[3] = {0, 0, -3}, d[3] = {0, 0, 1};
+    struct cloud cloud;
+
+    (void)state;
+    cloud_make(&cloud, scene, &ball, 1);
+    struct sf_truth *truth = truth_of(scene, &cloud.medium, 1e-4);
+    struct sf_truth_estimate estimate = estimate_of(truth, o, d, INFINITY, 20000, 0);
+    assert_estimate(&estimate, 0, 1);
+    assert_true(sf_truth_estimate_error(&estimate, 0) < 0.002);
+    sf_truth_destroy(&truth);
+    cloud_free(&cloud);
+    sf_scene_destroy(&scene);
+}
+
 /* One scattering, no environment: the integral of truth.h. */
 static void test_single(void **state)
 {
@@ -299,9 +319,9 @@ static void test_bad_bounds(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_white_furnace), cmocka_unit_test(test_single),   cmocka_unit_test(test_sky),
-        cmocka_unit_test(test_half_space),    cmocka_unit_test(test_enclosed), cmocka_unit_test(test_same_bits),
-        cmocka_unit_test(test_bad_bounds),
+        cmocka_unit_test(test_white_furnace), cmocka_unit_test(test_grey_furnace), cmocka_unit_test(test_single),
+        cmocka_unit_test(test_sky),           cmocka_unit_test(test_half_space),   cmocka_unit_test(test_enclosed),
+        cmocka_unit_test(test_same_bits),     cmocka_unit_test(test_bad_bounds),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
