@@ -229,18 +229,18 @@ static void test_shadow(void **state)
 
     (void)state;
     for (int i = 0; i < 3; i++) {
-        double radius = (float)radii[i];
+        double radius = (float)radii[i], middle = 5 + (double)0.244f;
         char text[512];
 
         snprintf(text, sizeof text,
                  "{\"lights\": [{\"type\": \"directional\", \"direction\": [0, 0, -1], \"intensity\": 2, \"shadows\": "
-                 "%s}], \"objects\": [{\"type\": \"sphere\", \"position\": [0, 0, 6], \"radius\": %g}, {\"type\": "
+                 "%s}], \"objects\": [{\"type\": \"sphere\", \"position\": [0.244, 0, 6], \"radius\": %g}, {\"type\": "
                  "\"plane\", \"position\": [0, 0, 5], \"normal\": [0, 0, 1]}], " DARK "}",
                  i == 1 ? "false" : "true", radii[i]);
         struct sf_scene *scene = parse(text);
         const struct sf_truth_medium medium = slab_medium(&slab, 0);
         struct sf_truth *truth = truth_of(scene, &medium, 1e-9);
-        double lit = 1 - exp(-0.4 * 10) - (i == 1 ? 0 : exp(-0.4 * (5 - radius)) - exp(-0.4 * (5 + radius)));
+        double lit = 1 - exp(-0.4 * 10) - (i == 1 ? 0 : exp(-0.4 * (middle - radius)) - exp(-0.4 * (middle + radius)));
 
         assert_near(trace(truth, o, d, 0, 10).radiance[0], 2 / (4 * PI) * exp(-0.4) * lit, 1e-9);
         sf_truth_destroy(&truth);
@@ -252,7 +252,7 @@ static void test_shadow(void **state)
  * meet it. */
 static void test_spot(void **state)
 {
-    static const double angles[][2] = {{20, 40}, {0.5, 1}};
+    static const double angles[][2] = {{20, 40}, {0.25, 0.5}};
     const struct sf_particle fog = ball_at(0, 0, 0, 40, 0.1);
     const double o[3] = {-5.3, 0, 2}, d[3] = {1, 0, 0};
     enum { STEPS = 1000000 };
@@ -264,14 +264,15 @@ static void test_spot(void **state)
         char text[512];
 
         snprintf(text, sizeof text,
-                 "{\"lights\": [{\"type\": \"spot\", \"position\": [0, 0, 0], \"direction\": [0, 0, 1], \"intensity\": "
-                 "7, \"inner\": %g, \"outer\": %g}], " DARK "}",
+                 "{\"lights\": [{\"type\": \"spot\", \"position\": [0, 0, 0], \"direction\": [0.5, 0, 1], "
+                 "\"intensity\": 7, \"inner\": %g, \"outer\": %g}], " DARK "}",
                  angles[beam][0], angles[beam][1]);
         struct sf_scene *scene = parse(text);
         scene->medium.albedo[0] = 1;
         for (int i = 0; i < STEPS; i++) {
             double t = 12 * (i + 0.5) / STEPS, x = t - 5.3, away = sqrt(x * x + 4);
-            double s = fmin(fmax((2 / away - outer) / (inner - outer), 0), 1);
+            double cosine = (0.5 * x + 2) / (away * sqrt(1.25));
+            double s = fmin(fmax((cosine - outer) / (inner - outer), 0), 1);
 
             sum += 0.1f / (4 * PI) * 7 * s * s * (3 - 2 * s) / (away * away) * exp(-0.1f * (t + away)) * 12 / STEPS;
         }
