@@ -72,20 +72,15 @@ static void sync_folder(const char *path)
     free(folder);
 }
 
-enum sf_status sf_report_write(const char *path, const char *text, size_t length)
+bool sf_file_replace(const char *path, const char *text, size_t length)
 {
     size_t room = strlen(path) + 32;
-    char *temporary;
+    char *temporary = malloc(room);
     bool written;
     int fd, error;
 
-    if (strcmp(path, "-") == 0) {
-        fwrite(text, 1, length, stdout);
-        return SF_OK;
-    }
-    temporary = malloc(room);
     if (!temporary)
-        return sf_console_fail(SF_ERROR_MEMORY, "out of memory");
+        return false;
     snprintf(temporary, room, "%s.%ld.tmp", path, (long)getpid());
     fd = open(temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     written = fd >= 0 && write_all(fd, text, length) && fsync(fd) == 0;
@@ -101,10 +96,23 @@ enum sf_status sf_report_write(const char *path, const char *text, size_t length
     if (!written && fd >= 0)
         unlink(temporary);
     free(temporary);
-    if (!written)
-        return sf_console_fail(SF_ERROR_IO, "%s: cannot be written: %s", path, strerror(error));
-    sync_folder(path);
-    return SF_OK;
+    if (written)
+        sync_folder(path);
+    errno = error;
+    return written;
+}
+
+enum sf_status sf_report_write(const char *path, const char *text, size_t length)
+{
+    if (strcmp(path, "-") == 0) {
+        fwrite(text, 1, length, stdout);
+        return SF_OK;
+    }
+    if (sf_file_replace(path, text, length))
+        return SF_OK;
+    if (errno == ENOMEM)
+        return sf_console_fail(SF_ERROR_MEMORY, "out of memory");
+    return sf_console_fail(SF_ERROR_IO, "%s: cannot be written: %s", path, strerror(errno));
 }
 
 enum sf_status sf_output_finish(enum sf_status status)

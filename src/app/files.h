@@ -2,13 +2,16 @@
 #ifndef SF_APP_FILES_H
 #define SF_APP_FILES_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include "sfumato/status.h"
 
 /* Is there a folder for `path` that can be written into, and is `path` not a folder itself? SF_ERROR_IO, with the
  * remedy. */
 enum sf_status sf_folder_check(const char *path);
-/* The final name holds all of the text or what it held before. "-" is standard output. */
+/* The final name holds all of the text or what it held before; errno says why it could not be written. */
+bool sf_file_replace(const char *path, const char *text, size_t length);
+/* The same with an error on the console. "-" is standard output. */
 enum sf_status sf_report_write(const char *path, const char *text, size_t length);
 /* Flushes standard output and turns a lost write into SF_ERROR_IO; gives `status` back when that is an error already.
  */

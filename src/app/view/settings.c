@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "../console.h"
+#include "../files.h"
 #include "vector.h"
 
 enum { FILE_MOST = 256 * 1024, SIDE_LEAST = 64, SIDE_MOST = 16384 }; /* bytes; px */
@@ -351,52 +352,20 @@ static bool make_folders(char *path)
     return made;
 }
 
-/* The final name holds all of it, or what it held before. errno tells of a failure. */
-static bool write_whole(const char *path, const json_t *root)
-{
-    size_t room = strlen(path) + 32;
-    char *temporary = malloc(room);
-    size_t flags = JSON_INDENT(2) | JSON_REAL_PRECISION(9); /* nine digits give each float back */
-    bool written = false;
-    int fd, error;
-
-    if (!temporary)
-        return false;
-    snprintf(temporary, room, "%s.%ld.tmp", path, (long)getpid());
-    fd = open(temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    error = errno;
-    if (fd >= 0) {
-        errno = ENOSPC; /* a write that ends early sets none */
-        written = json_dumpfd(root, fd, flags) == 0 && fsync(fd) == 0;
-        error = errno;
-    }
-    if (fd >= 0 && close(fd) != 0 && written) {
-        written = false;
-        error = errno;
-    }
-    if (written && rename(temporary, path) != 0) {
-        written = false;
-        error = errno;
-    }
-    if (!written && fd >= 0)
-        unlink(temporary);
-    free(temporary);
-    errno = error;
-    return written;
-}
-
 void sf_settings_save(const struct sf_settings *settings)
 {
-    char *path = settings_path();
+    const size_t flags = JSON_INDENT(2) | JSON_REAL_PRECISION(9); /* nine digits give each float back */
+    char *path = settings_path(), *text = NULL;
     json_t *root;
 
     if (!path)
         return;
-    if (!(root = settings_json(settings)))
+    if (!(root = settings_json(settings)) || !(text = json_dumps(root, flags)))
         sf_console_say(SF_LOG_WARNING, "%s: cannot be written: out of memory", path);
-    else if (!make_folders(path) || !write_whole(path, root))
+    else if (!make_folders(path) || !sf_file_replace(path, text, strlen(text)))
         sf_console_say(SF_LOG_WARNING, "%s: cannot be written: %s", path, strerror(errno));
     json_decref(root);
+    free(text);
     free(path);
 }
 
