@@ -32,17 +32,26 @@ void sf_view_reset(struct sf_view *view, const char *path)
     view->settle = true;
 }
 
-/* The scene's name without folder and ending, for titles and files. */
-static void stem_of(const char *path, char *stem, size_t room)
+void sf_view_apply(struct sf_view *view, const struct sf_control *control)
 {
-    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
+    char *assignment = sf_control_print(control);
 
-    snprintf(stem, room, "%.*s", dot && dot > name ? (int)(dot - name) : (int)strlen(name), name);
+    if (assignment)
+        sf_view_set(view, assignment);
+    free(assignment);
+}
+
+void sf_view_moved(struct sf_view *view)
+{
+    view->moved = view->dirty = true;
 }
 
 void sf_view_stem(const struct sf_view *view, char *stem, size_t room)
 {
-    stem_of(view->model.path, stem, room);
+    const char *path = view->model.path, *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    const char *dot = strrchr(name, '.');
+
+    snprintf(stem, room, "%.*s", dot && dot > name ? (int)(dot - name) : (int)strlen(name), name);
 }
 
 void sf_view_opened(struct sf_view *view)
@@ -54,7 +63,7 @@ void sf_view_opened(struct sf_view *view)
     sf_scene_view(view->model.scene, view->playback.frame / view->model.info.fps, &camera);
     sf_rig_follow(&view->rig, &camera);
     sf_settings_recent(&view->settings, view->model.path);
-    stem_of(view->model.path, stem, sizeof stem);
+    sf_view_stem(view, stem, sizeof stem);
     snprintf(title, sizeof title, "sfumato - %s", stem);
     sf_screen_title(view->screen, title);
     snprintf(view->save_path, sizeof view->save_path, "%s-edited.json", stem);
@@ -111,7 +120,7 @@ void sf_view_record(struct sf_view *view)
         sf_view_note(view, SF_LOG_INFO, "recorded %u frames", sf_shots_recorded(view->shots));
         sf_shots_stop(view->shots);
     } else {
-        stem_of(view->model.path, stem, sizeof stem);
+        sf_view_stem(view, stem, sizeof stem);
         if (sf_shots_record(view->shots, stem))
             return;
         view->playback.playing = true;

@@ -20,24 +20,13 @@ static bool in_picture(const struct sf_view *view, float x, float y)
     return x >= place[0] && y >= place[1] && x < place[0] + place[2] && y < place[1] + place[3];
 }
 
-/* The camera was moved by the person. */
-static void moved(struct sf_view *view)
-{
-    view->moved = view->dirty = true;
-}
-
 /* ---- lights ---- */
-
-static void current_view(const struct sf_view *view, struct sf_camera_view *eye)
-{
-    sf_rig_view(&view->rig, eye);
-}
 
 static unsigned find_handles(const struct sf_view *view, struct sf_handle handles[SF_HANDLES_MAX])
 {
     struct sf_camera_view eye;
 
-    current_view(view, &eye);
+    sf_rig_view(&view->rig, &eye);
     return sf_handles_find(view->model.controls, view->model.control_count, &eye, view->picture[2], view->picture[3],
                            handles);
 }
@@ -61,7 +50,7 @@ static void drag_light(struct sf_view *view, float x, float y)
 
     if (view->handle < 0 || (unsigned)view->handle >= count)
         return;
-    current_view(view, &eye);
+    sf_rig_view(&view->rig, &eye);
     set_light(view, sets,
               sf_handle_drag(&handles[view->handle], view->model.controls, view->model.control_count, &eye,
                              view->picture[2], view->picture[3], x - view->picture[0], y - view->picture[1],
@@ -76,7 +65,7 @@ static void orbit_light(struct sf_view *view, double turn, double rise)
     if (view->model.info.lights == 0)
         return;
     view->light %= view->model.info.lights;
-    current_view(view, &eye);
+    sf_rig_view(&view->rig, &eye);
     set_light(view, sets,
               sf_light_orbit(view->light, turn, rise, view->model.controls, view->model.control_count, &eye, sets));
 }
@@ -158,7 +147,7 @@ static void take_mouse(struct sf_view *view)
             view->hold = press(view, button, x, y);
     if (wheel != 0 && !sf_ui_takes_mouse() && in_picture(view, x, y) && !view->looking.values) {
         sf_rig_dolly(&view->rig, wheel);
-        moved(view);
+        sf_view_moved(view);
     }
     if (view->hold == SF_HOLD_NONE || (dx == 0 && dy == 0))
         return;
@@ -171,7 +160,7 @@ static void take_mouse(struct sf_view *view)
     else if (view->hold == SF_HOLD_LOOK)
         sf_rig_look(&view->rig, dx, dy, height);
     if (view->hold != SF_HOLD_LIGHT && view->hold != SF_HOLD_LOOKED)
-        moved(view);
+        sf_view_moved(view);
 }
 
 /* W A S D Q E while the right button is held. */
@@ -186,7 +175,7 @@ static void fly(struct sf_view *view, double seconds)
     if (view->hold != SF_HOLD_LOOK || (right == 0 && up == 0 && forward == 0))
         return;
     sf_rig_fly(&view->rig, right * faster, up * faster, forward * faster, seconds);
-    moved(view);
+    sf_view_moved(view);
 }
 
 /* ---- keys ---- */
@@ -240,7 +229,7 @@ static void frame_smoke(struct sf_view *view)
     double aspect = (double)view->picture[2] / view->picture[3];
 
     if (sf_rig_frame(&view->rig, view->bounds_min, view->bounds_max, aspect))
-        moved(view);
+        sf_view_moved(view);
     else
         sf_view_note(view, SF_LOG_INFO, "there is no smoke to frame yet");
 }
@@ -251,10 +240,10 @@ static void digit(struct sf_view *view, int key, int mods)
 
     if (!(mods & GLFW_MOD_SHIFT)) {
         if (sf_rig_recall(&view->rig, (unsigned)number))
-            moved(view);
+            sf_view_moved(view);
     } else if (number <= SF_RIG_BOTTOM) {
         sf_rig_side(&view->rig, (enum sf_rig_side)number);
-        moved(view);
+        sf_view_moved(view);
     }
 }
 
@@ -333,7 +322,7 @@ static void plain_key(struct sf_view *view, int key, int mods)
         break;
     case GLFW_KEY_C:
         sf_rig_release(&view->rig);
-        moved(view);
+        sf_view_moved(view);
         break;
     case GLFW_KEY_O:
         view->governor.on = !view->governor.on;

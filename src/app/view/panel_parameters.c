@@ -32,29 +32,34 @@ static bool wanted(const struct sf_view *view, const struct sf_control *control)
     return contains(control->path, view->search) || contains(control->doc, view->search);
 }
 
+/* "none", "1", "1, 2" or "1, 2, 3". */
+static void print_numbers(const double *values, uint32_t count, char *text, size_t room)
+{
+    if (count == 0)
+        snprintf(text, room, "none");
+    else if (count == 1)
+        snprintf(text, room, "%g", values[0]);
+    else if (count == 2)
+        snprintf(text, room, "%g, %g", values[0], values[1]);
+    else
+        snprintf(text, room, "%g, %g, %g", values[0], values[1], values[2]);
+}
+
 static void explain(const struct sf_control *control)
 {
     char range[96] = "", usual[96] = "required";
     const double *value = control->usual;
 
-    if (control->kind == SF_CONTROL_CHOICE)
-        range[0] = '\0';
-    else if (control->kind != SF_CONTROL_BOOL && control->numbers > 0)
+    if (!sf_ui_last_hovered()) /* nothing would be shown: no words are made */
+        return;
+    if (control->kind != SF_CONTROL_CHOICE && control->kind != SF_CONTROL_BOOL && control->numbers > 0)
         snprintf(range, sizeof range, "%g to %g %s\n", control->min, control->max, control->unit);
-    if (control->required)
-        ;
-    else if (control->kind == SF_CONTROL_CHOICE)
+    if (!control->required && control->kind == SF_CONTROL_CHOICE)
         snprintf(usual, sizeof usual, "%s", control->choices[(int)value[0]]);
-    else if (control->kind == SF_CONTROL_BOOL)
+    else if (!control->required && control->kind == SF_CONTROL_BOOL)
         snprintf(usual, sizeof usual, "%s", value[0] != 0 ? "on" : "off");
-    else if (control->numbers == 0)
-        snprintf(usual, sizeof usual, "none");
-    else if (control->numbers == 1)
-        snprintf(usual, sizeof usual, "%g", value[0]);
-    else if (control->numbers == 2)
-        snprintf(usual, sizeof usual, "%g, %g", value[0], value[1]);
-    else
-        snprintf(usual, sizeof usual, "%g, %g, %g", value[0], value[1], value[2]);
+    else if (!control->required)
+        print_numbers(value, control->numbers, usual, sizeof usual);
     sf_ui_tooltip("%s\n\n%susual: %s\n--set %s%s%s", control->doc, range, usual, control->path,
                   control->renews[0] ? "\nrenews: " : "", control->renews);
 }
@@ -164,7 +169,7 @@ static bool edit(struct sf_control *control, char text[TEXT_BYTES])
 }
 
 /* Another type may ask for keys that the one before did not have. */
-static void set_type(struct sf_view *view, const struct sf_control *control, const char *assignment)
+static void set_type(struct sf_view *view, const struct sf_control *control)
 {
     static const struct {
         const char *type, *key, *value;
@@ -178,10 +183,12 @@ static void set_type(struct sf_view *view, const struct sf_control *control, con
                  {"vortex", "strength", "1"},
                  {"wind", "velocity", "1,0,0"}};
     enum { SETS_MAX = 4 };
+    char extra[SETS_MAX][SF_NAME_BYTES * 2], *assignment = sf_control_print(control);
     const char *type = control->choices[(int)control->value[0]], *sets[SETS_MAX] = {assignment};
-    char extra[SETS_MAX][SF_NAME_BYTES * 2];
     uint32_t count = 1;
 
+    if (!assignment)
+        return;
     for (size_t i = 0; i < sizeof needs / sizeof needs[0] && count < SETS_MAX; i++) {
         char *to = extra[count];
 
@@ -193,6 +200,7 @@ static void set_type(struct sf_view *view, const struct sf_control *control, con
     }
     sf_model_set_many(&view->model, sets, count);
     view->settle = true;
+    free(assignment);
 }
 
 static void draw_control(struct sf_view *view, const struct sf_control *control)
@@ -200,7 +208,7 @@ static void draw_control(struct sf_view *view, const struct sf_control *control)
     bool changed = sf_model_changed(&view->model, control->path), reset = false, apply;
     float room = sf_ui_room(), rectangle[4];
     struct sf_control copy = *control;
-    char text[TEXT_BYTES], *assignment;
+    char text[TEXT_BYTES];
 
     sf_ui_id_push(control->path);
     if (changed)
@@ -228,19 +236,10 @@ static void draw_control(struct sf_view *view, const struct sf_control *control)
         sf_view_reset(view, control->path);
     if (!apply || reset)
         return;
-    assignment = sf_control_print(&copy);
-    if (assignment && copy.kind == SF_CONTROL_CHOICE && strcmp(copy.key, "type") == 0)
-        set_type(view, &copy, assignment);
-    else if (assignment)
-        sf_view_set(view, assignment);
-    free(assignment);
-}
-
-/* "lights.0" of "lights.0.color": the group's section; the first word alone for objects within groups. */
-static size_t section_of(const struct sf_control *control, char *name, size_t room)
-{
-    snprintf(name, room, "%s", control->group[0] ? control->group : "scene");
-    return strlen(name);
+    if (copy.kind == SF_CONTROL_CHOICE && strcmp(copy.key, "type") == 0)
+        set_type(view, &copy);
+    else
+        sf_view_apply(view, &copy);
 }
 
 /* What one turns most stands first: the smoke and how it is drawn, where it comes from, its light; then the stage. */
@@ -273,7 +272,7 @@ static void draw_place(struct sf_view *view, unsigned place)
 
         if (place_of(control) != place || !wanted(view, control))
             continue;
-        section_of(control, name, SF_NAME_BYTES);
+        snprintf(name, SF_NAME_BYTES, "%s", control->group[0] ? control->group : "scene");
         if (strcmp(name, section) != 0) {
             snprintf(section, sizeof section, "%.*s", SF_NAME_BYTES - 1, name);
             /* Opened by a search; closed again after it, since the names differ. */

@@ -13,7 +13,6 @@ static void choose(struct sf_view *view, const char *path, const char *label)
 {
     const struct sf_control *control = sf_model_control(&view->model, path);
     struct sf_control copy;
-    char *assignment;
     int choice;
 
     if (!control || control->kind != SF_CONTROL_CHOICE)
@@ -23,10 +22,7 @@ static void choose(struct sf_view *view, const char *path, const char *label)
     if (!sf_ui_choice(label, &choice, control->choices))
         return;
     copy.value[0] = choice;
-    assignment = sf_control_print(&copy);
-    if (assignment)
-        sf_view_set(view, assignment);
-    free(assignment);
+    sf_view_apply(view, &copy);
 }
 
 static int is_scene(const struct dirent *entry)
@@ -99,11 +95,6 @@ static void draw_scene(struct sf_view *view)
 
 /* ---- camera ---- */
 
-static void moved(struct sf_view *view)
-{
-    view->moved = view->dirty = true;
-}
-
 static void draw_presets(struct sf_view *view)
 {
     for (unsigned i = 0; i < SF_RIG_PRESETS; i++) {
@@ -114,7 +105,7 @@ static void draw_presets(struct sf_view *view)
             sf_ui_same_line(0);
         sf_ui_disable(!view->rig.preset_set[i]);
         if (sf_ui_small_button(label) && sf_rig_recall(&view->rig, i))
-            moved(view);
+            sf_view_moved(view);
         sf_ui_enable();
         sf_ui_tooltip("a camera of yours (%u); Ctrl+%u stores this one there", i + 1, i + 1);
     }
@@ -130,7 +121,7 @@ static void draw_camera(struct sf_view *view)
     sf_ui_disable(!view->rig.own);
     if (sf_ui_small_button("back to the scene's")) {
         sf_rig_release(&view->rig);
-        moved(view);
+        sf_view_moved(view);
     }
     sf_ui_enable();
     sf_ui_text_color(sf_ui_dim, "eye %.3g %.3g %.3g, target %.3g %.3g %.3g", view->rig.eye[0], view->rig.eye[1],
@@ -138,14 +129,14 @@ static void draw_camera(struct sf_view *view)
     if (sf_ui_slider("field of view", &fov, 5, 120, "%.0f deg", false)) {
         view->rig.fov = (double)fov;
         view->rig.own = true;
-        moved(view);
+        sf_view_moved(view);
     }
     for (unsigned i = 0; i < sizeof sides / sizeof sides[0]; i++) {
         if (i > 0)
             sf_ui_same_line(0);
         if (sf_ui_small_button(sides[i])) {
             sf_rig_side(&view->rig, (enum sf_rig_side)i);
-            moved(view);
+            sf_view_moved(view);
         }
     }
     draw_presets(view);

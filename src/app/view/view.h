@@ -152,7 +152,9 @@ bool sf_picture_pending(const struct sf_view *view);
 
 /* ---- actions (actions.c); failures have been said through the log ---- */
 void sf_view_set(struct sf_view *view, const char *assignment);
-void sf_view_reset(struct sf_view *view, const char *path); /* NULL: everything */
+void sf_view_apply(struct sf_view *view, const struct sf_control *control); /* a copy with another value */
+void sf_view_moved(struct sf_view *view);                                   /* the person has moved the camera */
+void sf_view_reset(struct sf_view *view, const char *path);                 /* NULL: everything */
 void sf_view_open(struct sf_view *view, const char *path);
 void sf_view_seek(struct sf_view *view, uint32_t frame);
 void sf_view_look(struct sf_view *view, const char *name); /* an image or buffer of the graph; "": the picture */
