@@ -271,6 +271,9 @@ static void declare_outputs(struct sf_assembly *assembly, const struct sf_assemb
     }
     assembly->read_counts =
         declare_readback(assembly, "read.counts", "output.counts", method->counts, sizeof(struct sf_particle_counts));
+    if (options->particles)
+        assembly->read_particles = declare_readback(assembly, "read.particles", "output.particles", method->particles,
+                                                    options->capacity * sizeof(struct sf_particle));
     if (!returned)
         return;
     if (options->aovs & SF_AOV_SMOKE && method->aov_radiance)

@@ -18,18 +18,19 @@ struct sf_assembly {
     sf_resource objects_upload;
     sf_resource environment, blank; /* imported images; 0 when not needed */
     sf_resource vertices, indices;  /* imported; 0 without meshes */
-    sf_resource read_color, read_depth, read_counts, read_smoke,
-        read_depths; /* readback buffers; 0 when not asked for */
+    sf_resource read_color, read_depth, read_counts, read_smoke, read_depths,
+        read_particles; /* readback buffers; 0 when not asked for */
     struct sf_inspected inspected;
 };
 
 struct sf_assembly_options {
     uint32_t width, height;
     bool float_color, no_readback;
-    bool shown;    /* the picture is drawn into an imported image that rests in SF_ACCESS_SAMPLED; only counts and
-                      `inspect` come back, unless: */
+    bool shown;    /* the picture is drawn into an imported image that rests in SF_ACCESS_SAMPLED; only counts, list
+                      and `inspect` come back, unless: */
     bool returned; /* all comes back as well */
     uint32_t aovs;
+    bool particles;      /* the list comes back */
     uint32_t capacity;   /* particles in the list */
     const char *inspect; /* an image or buffer of the graph that comes back as well, or NULL */
 };

@@ -5,10 +5,27 @@
 #include "render/renderer.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include "base/log.h"
 #include "shared/particle.h"
+
+/* The public particle is the device's own behind another name: the list is handed out as it comes back. */
+_Static_assert(sizeof(struct sf_frame_particle) == sizeof(struct sf_particle), "layout");
+_Static_assert(offsetof(struct sf_frame_particle, position) == offsetof(struct sf_particle, x), "layout");
+_Static_assert(offsetof(struct sf_frame_particle, radius) == offsetof(struct sf_particle, radius), "layout");
+_Static_assert(offsetof(struct sf_frame_particle, velocity) == offsetof(struct sf_particle, vx), "layout");
+_Static_assert(offsetof(struct sf_frame_particle, extinction) == offsetof(struct sf_particle, extinction), "layout");
+_Static_assert(offsetof(struct sf_frame_particle, age) == offsetof(struct sf_particle, age), "layout");
+_Static_assert(offsetof(struct sf_frame_particle, lifetime) == offsetof(struct sf_particle, lifetime), "layout");
+_Static_assert(offsetof(struct sf_frame_particle, rotation) == offsetof(struct sf_particle, rotation), "layout");
+_Static_assert(offsetof(struct sf_frame_particle, temperature) == offsetof(struct sf_particle, temperature), "layout");
+_Static_assert(offsetof(struct sf_frame_particle, birth_radius) == offsetof(struct sf_particle, radius0), "layout");
+_Static_assert(offsetof(struct sf_frame_particle, birth_extinction) == offsetof(struct sf_particle, extinction0),
+               "layout");
+_Static_assert(offsetof(struct sf_frame_particle, id) == offsetof(struct sf_particle, id), "layout");
+_Static_assert(offsetof(struct sf_frame_particle, look) == offsetof(struct sf_particle, look), "layout");
 
 enum { BATCH = 16 };
 
@@ -106,6 +123,10 @@ static enum sf_status record_picture(struct sf_renderer *renderer, struct sf_que
     if (!frame || !objects)
         return sf_fail(renderer->log, SF_ERROR_MEMORY, "frame %u: no memory for its uploads", queued->number);
     sf_uniforms_fill(renderer->scene, assembly->width, assembly->height, queued->number, queued->time, &filled);
+    if (renderer->posed)
+        queued->pose = renderer->pose;
+    else
+        sf_scene_camera(renderer->scene, queued->time, &queued->pose);
     if (renderer->posed)
         sf_uniforms_view(&renderer->pose, assembly->width, assembly->height, &filled);
     sf_shadow_fill(&assembly->drawn.shadow, &filled);
@@ -238,6 +259,15 @@ static void take_counts(const struct sf_particle_counts *counts, struct sf_frame
     frame->dropped = counts ? counts->dropped : 0;
 }
 
+static void fill_view(const struct sf_camera_pose *pose, struct sf_camera_view *view)
+{
+    memcpy(view->eye, pose->eye, sizeof view->eye);
+    memcpy(view->target, pose->target, sizeof view->target);
+    memcpy(view->up, pose->up, sizeof view->up);
+    view->fov = pose->fov;
+    view->near_clip = pose->near_clip;
+}
+
 enum sf_status sf_renderer_wait(struct sf_renderer *renderer, uint64_t ticket, struct sf_frame *frame)
 {
     const struct sf_queued *queued = find(renderer, ticket);
@@ -251,6 +281,7 @@ enum sf_status sf_renderer_wait(struct sf_renderer *renderer, uint64_t ticket, s
     frame->width = assembly->width;
     frame->height = assembly->height;
     frame->time = queued->time;
+    fill_view(&queued->pose, &frame->view);
     memcpy(frame->world_to_camera, queued->world_to_camera, sizeof frame->world_to_camera);
     memcpy(frame->world_to_clip, queued->world_to_clip, sizeof frame->world_to_clip);
     const void *color = read_back(renderer, assembly->read_color, queued->serial, &status);
@@ -261,6 +292,7 @@ enum sf_status sf_renderer_wait(struct sf_renderer *renderer, uint64_t ticket, s
     frame->depth = read_back(renderer, assembly->read_depth, queued->serial, &status);
     frame->smoke = read_back(renderer, assembly->read_smoke, queued->serial, &status);
     frame->smoke_depths = read_back(renderer, assembly->read_depths, queued->serial, &status);
+    frame->particles = read_back(renderer, assembly->read_particles, queued->serial, &status);
     take_counts(read_back(renderer, assembly->read_counts, queued->serial, &status), frame);
     if (!status)
         status = take_inspected(renderer, queued, frame);

@@ -15,6 +15,7 @@ struct sf_queued {
     uint32_t number;
     double time;
     bool stepped; /* simulation steps went with it */
+    struct sf_camera_pose pose;
     float world_to_camera[16], world_to_clip[16];
 };
 

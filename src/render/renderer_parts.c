@@ -2,12 +2,10 @@
  * stands does it take the place of the old, by steps that cannot fail. */
 #include "render/renderer.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include "base/log.h"
 #include "params/params.h"
-#include "scene/vector.h"
 
 /* ---- the stage ---- */
 
@@ -27,6 +25,8 @@ static enum sf_status check_options(const struct sf_device *device, const struct
                        SF_FRAMES_KEPT_MAX);
     if (options->inspect && options->no_readback)
         return sf_fail(log, SF_ERROR_USAGE, "inspecting '%s' needs what no_readback leaves out", options->inspect);
+    if (options->particles && options->no_readback)
+        return sf_fail(log, SF_ERROR_USAGE, "the list of particles needs what no_readback leaves out");
     return SF_OK;
 }
 
@@ -81,6 +81,7 @@ static enum sf_status make_stage(const struct sf_renderer *renderer, const struc
                                                .shown = options->shown,
                                                .returned = options->returned,
                                                .aovs = options->aovs,
+                                               .particles = options->particles,
                                                .inspect = options->inspect,
                                                .capacity = (uint32_t)scene->sim.capacity};
     enum sf_status status =
@@ -241,29 +242,13 @@ enum sf_status sf_renderer_set_options(struct sf_renderer *renderer, const struc
     return SF_OK;
 }
 
-/* As the loader makes a pose of a fixed camera. False where no picture can be: an eye at its target, or nowhere. */
-static bool pose_from(const struct sf_camera_view *view, struct sf_camera_pose *pose)
-{
-    bool apart = false, finite = isfinite(view->fov) && isfinite(view->near_clip);
-
-    for (int i = 0; i < 3; i++) {
-        apart = apart || view->eye[i] != view->target[i];
-        finite = finite && isfinite(view->eye[i]) && isfinite(view->target[i]) && isfinite(view->up[i]);
-    }
-    *pose = (struct sf_camera_pose){.fov = view->fov, .near_clip = view->near_clip};
-    memcpy(pose->eye, view->eye, sizeof view->eye);
-    memcpy(pose->target, view->target, sizeof view->target);
-    memcpy(pose->up, view->up, sizeof view->up);
-    return apart && finite && view->fov > 0 && view->fov < 180 && view->near_clip > 0 && sf_normalize(pose->up);
-}
-
 void sf_renderer_set_view(struct sf_renderer *renderer, const struct sf_camera_view *view)
 {
     struct sf_camera_pose pose;
 
     if (!view) {
         renderer->posed = false;
-    } else if (pose_from(view, &pose)) {
+    } else if (sf_pose_from_view(view, &pose)) {
         renderer->posed = true;
         renderer->pose = pose;
     } else {

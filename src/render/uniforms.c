@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <string.h>
+#include "scene/vector.h"
 #include "sim/obstacle.h"
 
 _Static_assert(SF_FRAME_LIGHTS == SF_LIGHTS_MAX, "shared limits");
@@ -221,4 +222,19 @@ void sf_object_fill(const struct sf_object *from, struct sf_gpu_object *object)
     object->albedo[3] = from->kind == SF_OBJECT_PLANE ? from->checker : 0;
     set_rgb(object->albedo2, from->albedo2, 1);
     object->albedo2[3] = sf_obstacle_collides(from) ? 1.0f : 0.0f;
+}
+
+bool sf_pose_from_view(const struct sf_camera_view *view, struct sf_camera_pose *pose)
+{
+    bool apart = false, finite = isfinite(view->fov) && isfinite(view->near_clip);
+
+    for (int i = 0; i < 3; i++) {
+        apart = apart || view->eye[i] != view->target[i];
+        finite = finite && isfinite(view->eye[i]) && isfinite(view->target[i]) && isfinite(view->up[i]);
+    }
+    *pose = (struct sf_camera_pose){.fov = view->fov, .near_clip = view->near_clip};
+    memcpy(pose->eye, view->eye, sizeof view->eye);
+    memcpy(pose->target, view->target, sizeof view->target);
+    memcpy(pose->up, view->up, sizeof view->up);
+    return apart && finite && view->fov > 0 && view->fov < 180 && view->near_clip > 0 && sf_normalize(pose->up);
 }

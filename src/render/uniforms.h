@@ -12,6 +12,9 @@ void sf_uniforms_fill(const struct sf_scene *scene, uint32_t width, uint32_t hei
 /* The eye is elsewhere than the scene's camera says. */
 void sf_uniforms_view(const struct sf_camera_pose *pose, uint32_t width, uint32_t height, struct sf_gpu_frame *frame);
 
+/* As the loader makes a pose of a fixed camera. False where no picture can be: an eye at its target, or nowhere. */
+bool sf_pose_from_view(const struct sf_camera_view *view, struct sf_camera_pose *pose);
+
 /* Which objects of the scene stand in the object list: planes first, then boxes, spheres and cylinders, then meshes, each in the scene's
  * order. */
 struct sf_object_list {

@@ -7,6 +7,7 @@
 struct render {
     const struct sf_truth *truth;
     struct sf_truth_view view;
+    uint32_t stride;
     struct sf_truth_picture *picture;
 };
 
@@ -47,18 +48,27 @@ void sf_truth_view_ray(const struct sf_truth_view *view, uint32_t x, uint32_t y,
         direction[i] = view->forward[i] + across * view->right[i] + upward * view->up[i];
 }
 
+/* The pixel that stands for a block. */
+static uint32_t chosen(uint32_t block, uint32_t stride, uint32_t side)
+{
+    uint64_t pixel = (uint64_t)block * stride + stride / 2;
+
+    return pixel < side ? (uint32_t)pixel : side - 1;
+}
+
 static enum sf_status render_row(void *user, uint32_t y, const atomic_bool *stopped)
 {
     const struct render *render = user;
     const struct sf_truth_view *view = &render->view;
+    uint32_t width = render->picture->width, stride = render->stride;
     struct sf_truth_space space = {0};
     enum sf_status status = SF_OK;
 
-    for (uint32_t x = 0; x < view->width && status == SF_OK && !atomic_load(stopped); x++) {
-        size_t at = (size_t)y * view->width + x;
+    for (uint32_t x = 0; x < width && status == SF_OK && !atomic_load(stopped); x++) {
+        size_t at = (size_t)y * width + x;
         double direction[3];
 
-        sf_truth_view_ray(view, x, y, direction);
+        sf_truth_view_ray(view, chosen(x, stride, view->width), chosen(y, stride, view->height), direction);
         render->picture->depth[at] = sf_truth_surface(render->truth, view->eye, direction, view->near);
         status = sf_truth_ray_in(render->truth, &space, view->eye, direction, view->near, render->picture->depth[at],
                                  &render->picture->pixels[at]);
@@ -73,16 +83,20 @@ static bool result_is_finite(const struct sf_truth_result *result)
            isfinite(result->transmittance) && isfinite(result->optical_depth) && isfinite(result->error);
 }
 
-static enum sf_status check(struct sf_truth_picture *picture, const struct sf_log *log)
+static enum sf_status check(const struct render *render, const struct sf_log *log)
 {
+    struct sf_truth_picture *picture = render->picture;
+
     for (uint32_t y = 0; y < picture->height; y++) {
         for (uint32_t x = 0; x < picture->width; x++) {
             const struct sf_truth_result *result = &picture->pixels[(size_t)y * picture->width + x];
 
             if (!result_is_finite(result))
                 return sf_fail(log, SF_ERROR_INTERNAL,
-                               "reference: pixel (%u, %u) is not a number: radiance %g %g %g, transmittance %g", x, y,
-                               result->radiance[0], result->radiance[1], result->radiance[2], result->transmittance);
+                               "reference: pixel (%u, %u) is not a number: radiance %g %g %g, transmittance %g",
+                               chosen(x, render->stride, render->view.width),
+                               chosen(y, render->stride, render->view.height), result->radiance[0], result->radiance[1],
+                               result->radiance[2], result->transmittance);
             picture->unconverged += !result->converged;
         }
     }
@@ -92,7 +106,7 @@ static enum sf_status check(struct sf_truth_picture *picture, const struct sf_lo
 enum sf_status sf_truth_render(const struct sf_truth *truth, const struct sf_camera_pose *pose, uint32_t width,
                                uint32_t height, const struct sf_truth_work *work, struct sf_truth_picture **out)
 {
-    struct render render = {.truth = truth};
+    struct render render = {.truth = truth, .stride = work->stride > 1 ? work->stride : 1};
     struct sf_truth_picture *picture;
     enum sf_status status = SF_ERROR_MEMORY;
 
@@ -101,18 +115,18 @@ enum sf_status sf_truth_render(const struct sf_truth *truth, const struct sf_cam
         return sf_fail(work->log, SF_ERROR_USAGE, "reference: a picture of %ux%u pixels", width, height);
     picture = calloc(1, sizeof *picture);
     if (picture) {
-        picture->width = width;
-        picture->height = height;
-        picture->pixels = calloc((size_t)width * height, sizeof *picture->pixels);
-        picture->depth = calloc((size_t)width * height, sizeof *picture->depth);
+        picture->width = (width - 1) / render.stride + 1;
+        picture->height = (height - 1) / render.stride + 1;
+        picture->pixels = calloc((size_t)picture->width * picture->height, sizeof *picture->pixels);
+        picture->depth = calloc((size_t)picture->width * picture->height, sizeof *picture->depth);
     }
     if (picture && picture->pixels && picture->depth) {
         render.picture = picture;
         sf_truth_view(pose, width, height, &render.view);
-        status = sf_truth_rows(height, work, render_row, &render);
+        status = sf_truth_rows(picture->height, work, render_row, &render);
     }
     if (status == SF_OK)
-        status = check(picture, work->log);
+        status = check(&render, work->log);
     else if (status == SF_ERROR_MEMORY)
         sf_fail(work->log, status, "no memory for a reference of %ux%u pixels", width, height);
     if (status != SF_OK)

@@ -70,6 +70,8 @@ struct sf_truth_picture {
 typedef bool (*sf_truth_progress_fn)(void *user, uint32_t done, uint32_t rows);
 struct sf_truth_work {
     unsigned threads; /* 0: as many as there are processors. The picture has the same bits with any number */
+    uint32_t stride; /* above 1: of each stride x stride block only its pixel (stride / 2, stride / 2), or the picture's
+                         last where that is outside; sf_truth_render alone */
     sf_truth_progress_fn progress;
     void *user;
     const struct sf_log *log;
@@ -83,7 +85,8 @@ struct sf_truth_view {
 void sf_truth_view(const struct sf_camera_pose *pose, uint32_t width, uint32_t height, struct sf_truth_view *view);
 void sf_truth_view_ray(const struct sf_truth_view *view, uint32_t x, uint32_t y, double direction[3]);
 
-/* The smoke from the near plane to the first surface, for every pixel's middle. SF_ERROR_INTERRUPTED when `progress` said so;
+/* The smoke from the near plane to the first surface, for every pixel's middle (of one a block: work->stride, and then the
+ * picture has a pixel a block). SF_ERROR_INTERRUPTED when `progress` said so;
  * SF_ERROR_INTERNAL when a result is not a number: the message names the pixel; SF_ERROR_MEMORY; SF_ERROR_USAGE for a picture
  * of no pixels. */
 enum sf_status sf_truth_render(const struct sf_truth *truth, const struct sf_camera_pose *pose, uint32_t width,

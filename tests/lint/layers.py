@@ -16,7 +16,7 @@ ALLOWED = {
     "light": {"base", "params", "scene", "graph", "gpu"},
     "truth": {"base", "params", "scene"},
     "methods": {"base", "params", "scene", "graph", "gpu", "sim", "light"},
-    "render": {"base", "params", "scene", "graph", "gpu", "sim", "light", "methods", "output"},
+    "render": {"base", "params", "scene", "graph", "gpu", "sim", "light", "truth", "methods", "output"},
     "app": set(),
     "include": set(),
 }

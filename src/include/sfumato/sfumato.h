@@ -173,7 +173,8 @@ struct sf_renderer_options {
     const char *inspect;
     /* The picture stays on the device for sf_window_show; color, depth and smoke do not come back, all else does. */
     bool shown;
-    bool returned; /* with `shown`: color and depth (and what `aovs` asks for) come back all the same */
+    bool returned;  /* with `shown`: color and depth (and what `aovs` asks for) come back all the same */
+    bool particles; /* the list of particles comes back too: 64 bytes for each of the scene's sim.capacity */
 };
 /* The scene and device must outlive it. */
 enum sf_status sf_renderer_create(struct sf_device *device, const struct sf_scene *scene,
@@ -201,17 +202,32 @@ enum sf_status sf_renderer_seek(struct sf_renderer *renderer, uint32_t frame, sf
 /* Queues simulation up to and the picture of frame number `frame` (time frame/fps) and returns; *ticket names it. */
 enum sf_status sf_renderer_render(struct sf_renderer *renderer, uint32_t frame, uint64_t *ticket);
 
+/* A sphere of smoke as the simulation left it for a frame: docs/scene.md, "Particles". */
+struct sf_frame_particle {
+    float position[3], radius;            /* m */
+    float velocity[3];                    /* m/s */
+    float extinction;                     /* 1/m, dilution and fades applied */
+    float age, lifetime;                  /* s; lifetime 0: does not die */
+    float rotation;                       /* rad, of its tile of the atlas */
+    float temperature;                    /* K above the air's */
+    float birth_radius, birth_extinction; /* m, 1/m */
+    uint32_t id;                          /* number of its birth, counted over all emitters */
+    uint32_t look; /* bits 0-7 tile of the atlas, 8-15 emitter, bit 16 stands still, bit 17 its tile turns clockwise */
+};
+
 struct sf_frame {
     uint32_t frame, width, height;
-    double time;           /* s */
+    double time;                /* s */
+    struct sf_camera_view view; /* the eye that it was drawn from */
     const uint16_t *color; /* [height][width][4] linear RGBA half, premultiplied, row 0 on top; NULL when float_color */
     const float *color_float;
     const float *depth;        /* [height][width] m of view depth; SF_NO_DEPTH where nothing is */
     const uint16_t *smoke;     /* [height][width][4] half; NULL unless asked for */
     const float *smoke_depths; /* [height][width][4] near, far, optical depth, transmittance; NULL unless asked for */
     uint32_t live;             /* particles */
-    uint32_t dropped;          /* births refused by the capacity so far */
-    float bounds_min[3], bounds_max[3]; /* m: of the particles' spheres; min above max when there are none */
+    const struct sf_frame_particle *particles; /* [live] in order of birth; NULL unless asked for */
+    uint32_t dropped;                          /* births refused by the capacity so far */
+    float bounds_min[3], bounds_max[3];        /* m: of the particles' spheres; min above max when there are none */
     /* [inspected_height][inspected_width][inspected_channels]: the image that the options name, as it is at the frame's
      * end, converted to float; NaN where no pass wrote. Array layers stand below each other. NULL unless asked for. */
     const float *inspected;
@@ -242,6 +258,79 @@ enum sf_status sf_renderer_graph_print(const struct sf_renderer *renderer, const
 /* The frame's compiled graph as "text", "dot" or "json"; needs no device. */
 enum sf_status sf_graph_print(const struct sf_scene *scene, uint32_t width, uint32_t height, uint32_t aovs,
                               const char *format, const struct sf_log *log, char **text);
+
+/* ---- the reference: how a frame's smoke should look ---- */
+
+/* The integral of docs/scene.md, "The medium", computed on the CPU in double precision to a stated tolerance: single
+ * scattering, with ambient light as the frame's method adds it (thick.ambient). docs/truth.md says how, and how it is known
+ * to be right. A reference never changes: any threads may use one at once. */
+struct sf_reference;
+struct sf_reference_options {
+    double tolerance; /* error of a pixel's radiance, relative to its brightest channel ...; 0: 1e-4 */
+    double floor;     /* ... or absolute, W/(m2 sr): whichever allows more; 0: 1e-7 */
+    unsigned threads; /* 0: one a processor. The same bits with any number */
+};
+/* For the particles of `frame`, made with sf_renderer_options.particles and drawn from `scene`. Copies all that it needs:
+ * frame, renderer and scene may go. SF_ERROR_USAGE: the frame has no particles, or an option is below 0 or not a number;
+ * SF_ERROR_SCENE: the scene's method draws a medium that the reference does not know, or a particle has a value that is
+ * not finite. */
+enum sf_status sf_reference_create(const struct sf_scene *scene, const struct sf_frame *frame,
+                                   const struct sf_reference_options *options, const struct sf_log *log,
+                                   struct sf_reference **reference);
+void sf_reference_destroy(struct sf_reference **reference);
+/* Where the scene's settings leave that integral, one to an index, such as "thick.octaves is 3: ..."; NULL behind the last.
+ * Good while the reference lives. */
+const char *sf_reference_note(const struct sf_reference *reference, uint32_t index);
+
+struct sf_reference_pixel {
+    float radiance[3];   /* of the smoke alone, premultiplied: what is behind it shows times `transmittance` */
+    float transmittance; /* from the near plane to the first surface */
+    float optical_depth;
+    float near,
+        far;     /* m of view depth: where the ray first enters smoke and last leaves it; SF_NO_DEPTH: it meets none */
+    float error; /* estimate, of the radiance's worst channel */
+    bool converged; /* it is within the tolerance */
+};
+struct sf_reference_picture {
+    uint32_t width, height;            /* of `pixels`: the size asked for over the stride, rounded up */
+    struct sf_reference_pixel *pixels; /* [height][width], row 0 on top */
+    uint32_t unconverged;              /* pixels that are not */
+};
+/* Every pixel's middle of a picture of width x height, seen from `view` (NULL: the frame's). With a stride above 1 only
+ * one pixel of each stride x stride block, counted from the top left: the block's pixel (stride / 2, stride / 2), or the
+ * picture's last one where that is outside. `progress` (may be NULL) is called in this thread with rows done and to do;
+ * false stops with SF_ERROR_INTERRUPTED. SF_ERROR_INTERNAL when a result is not a number: the message names the pixel. */
+enum sf_status sf_reference_render(const struct sf_reference *reference, const struct sf_camera_view *view,
+                                   uint32_t width, uint32_t height, uint32_t stride, sf_progress_fn progress,
+                                   void *user, struct sf_reference_picture **picture);
+void sf_reference_picture_destroy(struct sf_reference_picture **picture);
+
+struct sf_probe_point {
+    float depth;         /* m of view depth; SF_NO_DEPTH: the ray meets no smoke */
+    float transmittance; /* from the eye to here */
+    float radiance[3];   /* scattered in and emitted between the eye and here, as it reaches the eye */
+};
+/* Along the ray of pixel (x, y) of such a picture: `count` points, evenly from where it enters the smoke (or the near
+ * plane) to where it last leaves it (or the first surface). */
+enum sf_status sf_reference_probe(const struct sf_reference *reference, const struct sf_camera_view *view,
+                                  uint32_t width, uint32_t height, uint32_t x, uint32_t y,
+                                  struct sf_probe_point *points, uint32_t count);
+
+/* Light that is scattered more than once, as the mean of ever more random paths. Light from all around is dimmed by
+ * smoke and hidden by objects here, as it is in nature. */
+struct sf_reference_estimate {
+    uint32_t width, height;
+    uint32_t orders; /* scatterings at most; 0: as many as there are */
+    uint32_t paths;  /* of each pixel so far */
+    float *radiance; /* [height][width][3] of the smoke alone */
+    float *error;    /* [height][width][3] standard errors; INFINITY with fewer than two paths */
+};
+/* Adds `paths` to every pixel. *estimate NULL begins one; else all arguments are those that it began with. The same
+ * paths in the same order give the same bits. On failure *estimate is destroyed and NULL. */
+enum sf_status sf_reference_scatter(const struct sf_reference *reference, const struct sf_camera_view *view,
+                                    uint32_t width, uint32_t height, uint32_t orders, uint32_t paths,
+                                    sf_progress_fn progress, void *user, struct sf_reference_estimate **estimate);
+void sf_reference_estimate_destroy(struct sf_reference_estimate **estimate);
 
 /* ---- windows: pictures and a user interface on the host's surface ---- */
 
