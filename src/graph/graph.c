@@ -145,8 +145,8 @@ static void fill_watched(struct sf_graph *graph, sf_resource image)
                                                 .uses = &filled,
                                                 .use_count = 1,
                                                 .transfer = SF_TRANSFER_FILL,
-                                                .fill = floats   ? 0x7fc00000u
-                                                        : halves ? 0x7e007e00u
+                                                .fill = floats   ? SF_GRAPH_UNWRITTEN
+                                                        : halves ? 0x7f1e7f1eu /* twice as a half */
                                                                  : 0});
     sf_graph_pass(graph, &(struct sf_pass_desc){.name = "watch.copy",
                                                 .kind = SF_PASS_TRANSFER,

@@ -208,11 +208,14 @@ void sf_graph_pass(struct sf_graph *graph, const struct sf_pass_desc *desc);
 /* Marks a resource as wanted after the play (a frame, a readback, next frame's state): it and what it needs is not
  * culled. Persistent, history-written, imported-written and readback resources are outputs by themselves. */
 void sf_graph_output(struct sf_graph *graph, sf_resource resource);
-/* Before the passes are declared: where no pass writes the transient image of that name, it shall hold NaN (0 in formats
- * of whole numbers) instead of anything, so that who looks at it sees what was made and what was not. Costs a buffer of
+/* Before the passes are declared: where no pass writes the transient image of that name, it shall hold the NaN
+ * of SF_GRAPH_UNWRITTEN (0 in formats of whole numbers) instead of anything, so that who looks at it sees what was made and
+ * what was not. Costs a buffer of
  * the image's size and a copy, where the first pass does not clear it anyway. `name` is copied; without such an image
  * it does nothing. */
 void sf_graph_watch(struct sf_graph *graph, const char *name);
+/* The bits of that NaN, in a float or in a half that was made a float: none that an operation gives by itself. */
+#define SF_GRAPH_UNWRITTEN 0x7fe3c000u
 /* The resource of that name, or 0. */
 sf_resource sf_graph_find(const struct sf_graph *graph, const char *name);
 

@@ -76,6 +76,8 @@ enum sf_status sf_frame_write_exr(const struct sf_frame *frame, const char *path
         add_channels(&layers, depth, 1, frame->depth, SF_EXR_FLOAT, SF_EXR_FLOAT);
     if (frame->smoke)
         add_channels(&layers, smoke, 4, frame->smoke, SF_EXR_HALF, stored);
+    else if (frame->smoke_float)
+        add_channels(&layers, smoke, 4, frame->smoke_float, SF_EXR_FLOAT, stored);
     if (frame->smoke_depths)
         add_channels(&layers, depths, 4, frame->smoke_depths, SF_EXR_FLOAT, SF_EXR_FLOAT);
     exr.attribute_count = fill_attributes(frame, options, attributes);

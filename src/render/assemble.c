@@ -276,9 +276,11 @@ static void declare_outputs(struct sf_assembly *assembly, const struct sf_assemb
                                                     options->capacity * sizeof(struct sf_particle));
     if (!returned)
         return;
-    if (options->aovs & SF_AOV_SMOKE && method->aov_radiance)
-        assembly->read_smoke =
-            declare_readback(assembly, "read.smoke", "output.smoke", method->aov_radiance, pixels * 8);
+    if (options->aovs & SF_AOV_SMOKE && method->aov_radiance) {
+        assembly->smoke_format = sf_graph_image_at(assembly->graph, method->aov_radiance)->format;
+        assembly->read_smoke = declare_readback(assembly, "read.smoke", "output.smoke", method->aov_radiance,
+                                                pixels * sf_format_bytes(assembly->smoke_format));
+    }
     if (options->aovs & SF_AOV_DEPTHS && method->aov_depths)
         assembly->read_depths =
             declare_readback(assembly, "read.smoke_depths", "output.smoke_depths", method->aov_depths, pixels * 16);

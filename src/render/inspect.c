@@ -4,6 +4,7 @@
 #include "base/array.h"
 #include "base/suggest.h"
 #include "output/half.h"
+#include "sfumato/sfumato.h"
 
 enum { NAMES_MAX = 64 };
 
@@ -129,6 +130,14 @@ enum sf_status sf_inspect_declare(struct sf_graph *graph, const char *name, cons
                                          .use_count = 2,
                                          .transfer = inspected->words > 0 ? SF_TRANSFER_FRONT : SF_TRANSFER_COPY});
     return SF_OK;
+}
+
+bool sf_frame_unwritten(float value)
+{
+    uint32_t bits;
+
+    memcpy(&bits, &value, sizeof bits);
+    return bits == SF_GRAPH_UNWRITTEN;
 }
 
 uint64_t sf_inspect_values(const struct sf_inspected *inspected)

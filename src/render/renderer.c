@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/log.h"
+#include "output/half.h"
 #include "shared/particle.h"
 
 /* The public particle is the device's own behind another name: the list is handed out as it comes back. */
@@ -236,6 +237,49 @@ static enum sf_status take_inspected(struct sf_renderer *renderer, const struct 
     return SF_OK;
 }
 
+/* As the other kind of number, once a ticket; NULL when memory is out. */
+static const void *convert_smoke(struct sf_renderer *renderer, const struct sf_queued *queued, const void *data)
+{
+    const struct sf_assembly *assembly = renderer->stage.assembly;
+    uint32_t slot = (uint32_t)(queued->ticket % renderer->options.frames_kept);
+    size_t count = (size_t)assembly->width * assembly->height * 4;
+    bool to_float = assembly->smoke_format == SF_FORMAT_RGBA16F;
+    const uint16_t *halves = data;
+    void **values = &renderer->stage.smoke[slot];
+    float *floats;
+
+    if (!*values)
+        *values = malloc(count * (to_float ? sizeof(float) : sizeof(uint16_t)));
+    if (!*values || renderer->stage.smoke_ticket[slot] == queued->ticket)
+        return *values;
+    floats = *values;
+    for (size_t i = 0; i < count && to_float; i++)
+        floats[i] = sf_half_to_float(halves[i]);
+    if (!to_float)
+        sf_half_row(data, sizeof(float), count, *values);
+    renderer->stage.smoke_ticket[slot] = queued->ticket;
+    return *values;
+}
+
+static enum sf_status take_smoke(struct sf_renderer *renderer, const struct sf_queued *queued, struct sf_frame *frame)
+{
+    const struct sf_assembly *assembly = renderer->stage.assembly;
+    enum sf_status status = SF_OK;
+    const void *data = read_back(renderer, assembly->read_smoke, queued->serial, &status);
+
+    if (!data)
+        return status;
+    if ((assembly->smoke_format == SF_FORMAT_RGBA32F) != renderer->options.float_aovs)
+        data = convert_smoke(renderer, queued, data);
+    if (!data)
+        return SF_ERROR_MEMORY;
+    if (renderer->options.float_aovs)
+        frame->smoke_float = data;
+    else
+        frame->smoke = data;
+    return SF_OK;
+}
+
 /* As glsl/lib/order.glsl. */
 static float float_from_order(uint32_t order)
 {
@@ -290,10 +334,11 @@ enum sf_status sf_renderer_wait(struct sf_renderer *renderer, uint64_t ticket, s
     else
         frame->color = color;
     frame->depth = read_back(renderer, assembly->read_depth, queued->serial, &status);
-    frame->smoke = read_back(renderer, assembly->read_smoke, queued->serial, &status);
     frame->smoke_depths = read_back(renderer, assembly->read_depths, queued->serial, &status);
     frame->particles = read_back(renderer, assembly->read_particles, queued->serial, &status);
     take_counts(read_back(renderer, assembly->read_counts, queued->serial, &status), frame);
+    if (!status)
+        status = take_smoke(renderer, queued, frame);
     if (!status)
         status = take_inspected(renderer, queued, frame);
     if (status)

@@ -26,6 +26,8 @@ struct sf_stage {
     struct sf_pass_timing *timings;       /* room for all passes */
     float *inspected[SF_FRAMES_KEPT_MAX]; /* by ticket; NULL until the first is asked for */
     uint64_t inspected_ticket[SF_FRAMES_KEPT_MAX];
+    void *smoke[SF_FRAMES_KEPT_MAX]; /* likewise, when what comes back is not what was asked for */
+    uint64_t smoke_ticket[SF_FRAMES_KEPT_MAX];
     struct sf_gpu_image *shown; /* NULL: not asked for */
     uint32_t shown_accesses;    /* that it was made for */
     bool drawn;                 /* it holds a picture */

@@ -107,6 +107,8 @@ static void leave_stage(struct sf_stage *stage, const struct sf_stage *other)
         sf_gpu_image_destroy(&stage->shown);
     for (int i = 0; i < SF_FRAMES_KEPT_MAX; i++)
         free(stage->inspected[i]);
+    for (int i = 0; i < SF_FRAMES_KEPT_MAX; i++)
+        free(stage->smoke[i]);
     free(stage->timings);
     *stage = (struct sf_stage){0};
 }

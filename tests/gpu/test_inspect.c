@@ -158,6 +158,7 @@ static void test_camera(void **state)
         const float *texel = &frame.inspected[4 * p];
 
         untouched += isnan(texel[0]) && isnan(texel[1]) && isnan(texel[2]) && isnan(texel[3]);
+        assert_int_equal(sf_frame_unwritten(texel[0]), isnan(texel[0]) != 0); /* no pass makes NaN */
         if (!(texel[0] < SF_NO_DEPTH) || !(texel[3] > 0))
             continue;
         smoke++;
@@ -165,6 +166,15 @@ static void test_camera(void **state)
     }
     assert_true(smoke > 20);
     assert_true(untouched > 20);
+    sf_renderer_destroy(&renderer);
+    renderer = create("smoke", 0); /* halves */
+    frame = frame_of(renderer, FRAME);
+    for (size_t p = untouched = 0; p < (size_t)(WIDTH / 2) * (HEIGHT / 2) * 4; p++) {
+        untouched += sf_frame_unwritten(frame.inspected[p]);
+        assert_int_equal(sf_frame_unwritten(frame.inspected[p]), isnan(frame.inspected[p]) != 0);
+    }
+    assert_true(untouched > 20);
+    assert_false(sf_frame_unwritten(NAN) || sf_frame_unwritten(-NAN) || sf_frame_unwritten(INFINITY));
     sf_renderer_destroy(&renderer);
 }
 

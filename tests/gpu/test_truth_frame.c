@@ -8,6 +8,7 @@
 #include <string.h>
 #include <cmocka.h>
 
+#include "output/half.h"
 #include "scene/scene.h"
 #include "sfumato/sfumato.h"
 
@@ -70,6 +71,34 @@ static struct sf_reference *reference_of(const struct shot *shot)
         SF_OK)
         fail_msg("%s", last_message);
     return reference;
+}
+
+/* The smoke as float is the smoke as half, in other words. */
+static void test_float_aovs(void **state)
+{
+    struct sf_renderer_options options = {.width = WIDTH, .height = HEIGHT, .aovs = SF_AOV_SMOKE, .float_aovs = true};
+    struct shot shot = draw_with(SCENE(PLAIN, BALL), &options, 0);
+    float *floats = malloc(sizeof(float) * WIDTH * HEIGHT * 4);
+    uint64_t ticket;
+    uint32_t smoky = 0;
+
+    (void)state;
+    assert_null(shot.frame.smoke);
+    assert_non_null(shot.frame.smoke_float);
+    assert_non_null(floats);
+    memcpy(floats, shot.frame.smoke_float, sizeof(float) * WIDTH * HEIGHT * 4);
+    options.float_aovs = false;
+    assert_int_equal(sf_renderer_set_options(shot.renderer, &options), SF_OK);
+    assert_int_equal(sf_renderer_render(shot.renderer, 0, &ticket), SF_OK);
+    assert_int_equal(sf_renderer_wait(shot.renderer, ticket, &shot.frame), SF_OK);
+    assert_null(shot.frame.smoke_float);
+    for (uint32_t i = 0; i < WIDTH * HEIGHT * 4; i++) {
+        assert_int_equal(sf_half_from_float(floats[i]), shot.frame.smoke[i]);
+        smoky += floats[i] > 0;
+    }
+    assert_true(smoky > 100);
+    free(floats);
+    drop(&shot);
 }
 
 /* What the list says is what comes back, in its order. */
@@ -374,11 +403,17 @@ static int teardown(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_particles),       cmocka_unit_test(test_particles_of_the_frame),
-        cmocka_unit_test(test_particles_usage), cmocka_unit_test(test_reference_picture),
-        cmocka_unit_test(test_reference_view),  cmocka_unit_test(test_interrupted),
-        cmocka_unit_test(test_probe),           cmocka_unit_test(test_scatter),
-        cmocka_unit_test(test_notes),           cmocka_unit_test(test_empty),
+        cmocka_unit_test(test_float_aovs),
+        cmocka_unit_test(test_particles),
+        cmocka_unit_test(test_particles_of_the_frame),
+        cmocka_unit_test(test_particles_usage),
+        cmocka_unit_test(test_reference_picture),
+        cmocka_unit_test(test_reference_view),
+        cmocka_unit_test(test_interrupted),
+        cmocka_unit_test(test_probe),
+        cmocka_unit_test(test_scatter),
+        cmocka_unit_test(test_notes),
+        cmocka_unit_test(test_empty),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

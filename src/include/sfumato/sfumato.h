@@ -165,6 +165,7 @@ struct sf_renderer_options {
     uint32_t width, height; /* px, 1..device's limit */
     bool float_color;       /* color as float; else half */
     uint32_t aovs;          /* enum sf_aov bits */
+    bool float_aovs;        /* SF_AOV_SMOKE as float, as fine as the method has it; else half */
     bool timing;            /* timestamps around each pass */
     uint32_t frames_kept;   /* results that may be looked at at once: 1..8; 0 means 2 */
     bool no_readback;       /* nothing comes back but times (for measuring) */
@@ -221,8 +222,9 @@ struct sf_frame {
     struct sf_camera_view view; /* the eye that it was drawn from */
     const uint16_t *color; /* [height][width][4] linear RGBA half, premultiplied, row 0 on top; NULL when float_color */
     const float *color_float;
-    const float *depth;        /* [height][width] m of view depth; SF_NO_DEPTH where nothing is */
-    const uint16_t *smoke;     /* [height][width][4] half; NULL unless asked for */
+    const float *depth;    /* [height][width] m of view depth; SF_NO_DEPTH where nothing is */
+    const uint16_t *smoke; /* [height][width][4] half; NULL unless asked for, and when float_aovs */
+    const float *smoke_float;
     const float *smoke_depths; /* [height][width][4] near, far, optical depth, transmittance; NULL unless asked for */
     uint32_t live;             /* particles */
     const struct sf_frame_particle *particles; /* [live] in order of birth; NULL unless asked for */
@@ -237,6 +239,9 @@ struct sf_frame {
     float world_to_camera[16], world_to_clip[16]; /* row-major; camera: right-handed, -z forward, Vulkan clip space */
 };
 #define SF_NO_DEPTH 1.0e6f
+
+/* Whether that number is the NaN that stands for "no pass wrote here" in `inspected`, and not one that a pass made. */
+bool sf_frame_unwritten(float value);
 
 /* Waits for the frame. Its pointers hold until frames_kept further frames have been queued. */
 enum sf_status sf_renderer_wait(struct sf_renderer *renderer, uint64_t ticket, struct sf_frame *frame);
