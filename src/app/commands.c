@@ -2,6 +2,7 @@
 
 #include "bench.h"
 #include "capture.h"
+#include "verify/verify.h"
 #if defined(SF_VIEWER)
 #include "view/view.h"
 #else
@@ -110,6 +111,30 @@ static const struct sf_option bench_options[] = {
     {"sizes", 0, SF_OPTION_TEXT, FIELD(sizes), .value = "LIST", .doc = "pairs to sort, such as 16384,65536"},
     {.name = NULL}};
 
+static const struct sf_option verify_options[] = {
+    {"methods", 0, SF_OPTION_TEXT, FIELD(methods), .value = "LIST",
+     .doc = "with commas between (default: all that draw smoke)"},
+    {"size", 's', SF_OPTION_SIZE, FIELD(size), .value = "WxH", .initial = "200x200", .doc = "pixels that are compared",
+     .min = 1, .max = SIDE_MAX},
+    {"frames", 'f', SF_OPTION_TEXT, FIELD(frames), .value = "LIST", .initial = "36",
+     .doc = "frames of each scene, such as 24,48"},
+    {"json", 0, SF_OPTION_FLAG, FIELD(json), .doc = "print JSON in place of the table"},
+    {"goals", 0, SF_OPTION_FLAG, FIELD(goals), .doc = "say which rows reach the goals"},
+    {"require-goals", 0, SF_OPTION_FLAG, FIELD(require_goals), .doc = "a row that does not is an error"},
+    {"tolerance", 0, SF_OPTION_REAL, FIELD(tolerance), .value = "X", .initial = "1e-4",
+     .doc = "of the reference's radiance, relative", .min = 1e-9, .max = 0.1},
+    {"stride", 0, SF_OPTION_NUMBER, FIELD(stride), .value = "N",
+     .doc = "compare one pixel of each NxN (default: all, fewer with many particles)", .min = 1, .max = 1024},
+    {"threads", 0, SF_OPTION_NUMBER, FIELD(threads), .value = "N", .doc = "for the reference (default: one a core)",
+     .min = 1, .max = 1024},
+    {"time-size", 0, SF_OPTION_SIZE, FIELD(time_size), .value = "WxH", .initial = "800x800",
+     .doc = "pixels of the frames that are timed", .min = 1, .max = SIDE_MAX},
+    {"repeats", 0, SF_OPTION_NUMBER, FIELD(repeats), .value = "N", .initial = "5",
+     .doc = "times of each, at most; 0: none", .min = 0, .max = 100000},
+    {"set", 0, SF_OPTION_LIST, FIELD(sets), .value = "GROUP.KEY=VALUE",
+     .doc = "a parameter over the scenes' (see sfumato params); repeatable"},
+    {.name = NULL}};
+
 static const struct sf_option devices_options[] = {{"json", 0, SF_OPTION_FLAG, FIELD(json), .doc = "as JSON"},
                                                    {.name = NULL}};
 
@@ -127,6 +152,7 @@ static const struct sf_option *const view_tables[] = {view_options, scene_option
                                                       NULL};
 static const struct sf_option *const bench_tables[] = {bench_options,  size_options,   scene_options,
                                                        device_options, common_options, NULL};
+static const struct sf_option *const verify_tables[] = {verify_options, device_options, common_options, NULL};
 static const struct sf_option *const devices_tables[] = {devices_options, common_options, NULL};
 static const struct sf_option *const graph_tables[] = {graph_options, size_options, scene_options, common_options,
                                                        NULL};
@@ -138,6 +164,8 @@ static const char *const capture_notes[] = {
     "  sfumato capture scenes/plume.json -o out/plume.####.exr -o out/plume.####.png --frames 0-95", NULL};
 static const char *const bench_notes[] = {
     "  sfumato bench scenes/plume.json --set thick.steps=24 --compare before.json", NULL};
+static const char *const verify_notes[] = {"Without SCENE: those of scenes/truth, here or beside the program.",
+                                           "  sfumato verify scenes/truth/*.json --set thick.steps=32 --goals", NULL};
 static const char *const graph_notes[] = {"  sfumato graph scenes/plume.json --format dot | dot -Tsvg > graph.svg",
                                           NULL};
 
@@ -159,6 +187,8 @@ const struct sf_command sf_commands[] = {
      sf_capture_run},
     {"bench", "SCENE", "Times every pass of a scene's frames on the device.", bench_notes, bench_tables, 0, 1,
      sf_bench_run},
+    {"verify", "[SCENE...]", "Says how wrong each method is, and how fast.", verify_notes, verify_tables, 0, SIZE_MAX,
+     sf_verify_run},
     {"devices", "", "Lists the Vulkan devices of this machine.", NULL, devices_tables, 0, 0, sf_devices_run},
     {"graph", "SCENE", "Prints the compiled render graph of a scene's frame; needs no device.", graph_notes,
      graph_tables, 1, 1, sf_graph_run},

@@ -13,8 +13,8 @@ static void print_help(FILE *stream)
 {
     fputs("sfumato COMMAND [OPTIONS] ...\nSmoke, fire and clouds in real time with Vulkan.\n\n", stream);
     for (const struct sf_command *command = sf_commands; command->name; command++)
-        fprintf(stream, "  %-8s %-9s %s\n", command->name, command->operands, command->summary);
-    fputs("  help     [COMMAND] Prints this, or the options of a command.\n\n"
+        fprintf(stream, "  %-8s %-10s %s\n", command->name, command->operands, command->summary);
+    fputs("  help     [COMMAND]  Prints this, or the options of a command.\n\n"
           "sfumato --version prints the version. Exit codes: 0 ok, 1 a defect of the program, 2 usage, 3 bad scene,\n"
           "4 no device, 5 device lost, 6 out of memory, 7 a file could not be read or written, 130 interrupted.\n",
           stream);

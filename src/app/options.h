@@ -49,6 +49,12 @@ struct sf_arguments {
     const char *json_file, *csv_file, *trace_file, *compare_file;
     bool sort;
     const char *sizes;
+    /* verify */
+    const char *methods; /* NULL: all that draw smoke */
+    struct sf_argument_size time_size;
+    uint32_t stride;                   /* 0: by the number of particles */
+    struct sf_argument_real tolerance; /* of the reference */
+    bool goals, require_goals;
     /* view */
     const char *present_mode; /* NULL: as last time */
     bool fullscreen, bare, paused, no_adapt;

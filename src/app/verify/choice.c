@@ -1,0 +1,227 @@
+/* What is measured: scenes, methods, and how densely. */
+#include "verify.h"
+
+#include <dirent.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "../console.h"
+#include "../session.h"
+
+enum { PATH_BYTES = 4096 };
+static const char truth_scenes[] = "scenes/truth";
+
+static enum sf_status out_of_memory(void)
+{
+    return sf_console_fail(SF_ERROR_MEMORY, "out of memory");
+}
+
+/* ---- scenes ---- */
+
+static int compare_names(const void *a, const void *b)
+{
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+static bool ends_in_json(const char *name)
+{
+    size_t length = strlen(name);
+
+    return length > 5 && strcmp(name + length - 5, ".json") == 0;
+}
+
+/* Takes over `path`. */
+static enum sf_status add_path(struct sf_verify *verify, char *path)
+{
+    char **paths = path ? realloc(verify->paths, (verify->path_count + 1) * sizeof *paths) : NULL;
+
+    if (!paths) {
+        free(path);
+        return out_of_memory();
+    }
+    verify->paths = paths;
+    paths[verify->path_count++] = path;
+    return SF_OK;
+}
+
+static char *joined(const char *folder, const char *name)
+{
+    size_t room = strlen(folder) + strlen(name) + 2;
+    char *path = malloc(room);
+
+    if (path)
+        snprintf(path, room, "%s/%s", folder, name);
+    return path;
+}
+
+/* The scenes of a folder by name; none when there is no such folder. */
+static enum sf_status add_folder(struct sf_verify *verify, const char *folder)
+{
+    DIR *list = opendir(folder);
+    const struct dirent *entry;
+    enum sf_status status = SF_OK;
+
+    while (list && !status && (entry = readdir(list)))
+        if (ends_in_json(entry->d_name))
+            status = add_path(verify, joined(folder, entry->d_name));
+    if (list)
+        closedir(list);
+    if (verify->path_count > 0)
+        qsort(verify->paths, verify->path_count, sizeof *verify->paths, compare_names);
+    return status;
+}
+
+/* The folder of the running program; "" when the system does not tell. */
+static void program_folder(char folder[PATH_BYTES])
+{
+    ssize_t length = readlink("/proc/self/exe", folder, PATH_BYTES - 1);
+    char *slash;
+
+    folder[length > 0 ? length : 0] = '\0';
+    slash = strrchr(folder, '/');
+    if (slash)
+        *slash = '\0';
+}
+
+enum sf_status sf_verify_find_scenes(struct sf_verify *verify)
+{
+    static const char *const places[] = {"", "/.."};
+    const struct sf_argument_list *files = &verify->arguments->files;
+    char folder[PATH_BYTES], beside[PATH_BYTES + 64];
+    enum sf_status status = SF_OK;
+
+    for (size_t i = 0; i < files->count && !status; i++)
+        status = add_path(verify, strdup(files->items[i]));
+    if (files->count > 0)
+        return status;
+    status = add_folder(verify, truth_scenes);
+    program_folder(folder);
+    for (size_t i = 0; i < 2 && folder[0] && verify->path_count == 0 && !status; i++) {
+        snprintf(beside, sizeof beside, "%s%s/%s", folder, places[i], truth_scenes);
+        status = add_folder(verify, beside);
+    }
+    if (!status && verify->path_count == 0)
+        return sf_console_fail(SF_ERROR_USAGE, "verify: needs SCENE: there is no folder %s here or beside the program",
+                               truth_scenes);
+    return status;
+}
+
+/* ---- methods ---- */
+
+/* Takes over `method`. */
+static enum sf_status add_entry(struct sf_verify *verify, char *method)
+{
+    struct sf_verify_entry *entries =
+        method ? realloc(verify->entries, (verify->entry_count + 1) * sizeof *entries) : NULL;
+
+    if (!entries) {
+        free(method);
+        return out_of_memory();
+    }
+    verify->entries = entries;
+    entries[verify->entry_count++] = (struct sf_verify_entry){.method = method};
+    return SF_OK;
+}
+
+static enum sf_status unknown_method(const char *method, const char *const *known, size_t count)
+{
+    const char *nearest = sf_nearest_word(method, known, count);
+    char all[512] = "";
+    size_t used = 0;
+
+    for (size_t i = 0; i < count && used < sizeof all; i++)
+        used += (size_t)snprintf(all + used, sizeof all - used, "%s%s", i ? ", " : "", known[i]);
+    if (nearest)
+        return sf_console_fail(SF_ERROR_USAGE, "--methods: unknown method %s; did you mean %s? (known: %s)", method,
+                               nearest, all);
+    return sf_console_fail(SF_ERROR_USAGE, "--methods: unknown method %s (known: %s)", method, all);
+}
+
+static enum sf_status add_method(struct sf_verify *verify, const char *name, size_t length, const char *const *known,
+                                 size_t count)
+{
+    char *method = strndup(name, length);
+    bool found = false;
+    enum sf_status status;
+
+    if (!method)
+        return out_of_memory();
+    for (size_t i = 0; i < count && !found; i++)
+        found = strcmp(known[i], method) == 0;
+    if (!found) {
+        status = unknown_method(method, known, count);
+        free(method);
+        return status;
+    }
+    for (size_t i = 0; i < verify->entry_count; i++)
+        if (strcmp(verify->entries[i].method, method) == 0) {
+            status = sf_console_fail(SF_ERROR_USAGE, "--methods: %s is given twice", method);
+            free(method);
+            return status;
+        }
+    return add_entry(verify, method);
+}
+
+static enum sf_status add_methods(struct sf_verify *verify, const char *const *known)
+{
+    const char *list = verify->arguments->methods;
+    enum sf_status status = SF_OK;
+    size_t count = 0;
+
+    while (known[count])
+        count++;
+    for (size_t i = 0; i < count && !list && !status; i++)
+        if (strcmp(known[i], "none") != 0)
+            status = add_method(verify, known[i], strlen(known[i]), known, count);
+    while (list && !status) {
+        size_t length = strcspn(list, ",");
+
+        status = add_method(verify, list, length, known, count);
+        list = list[length] ? list + length + 1 : NULL;
+    }
+    return status;
+}
+
+/* The parameter table knows the methods; any scene shows it. */
+enum sf_status sf_verify_find_entries(struct sf_verify *verify)
+{
+    struct sf_scene *scene = NULL;
+    struct sf_control *controls = NULL;
+    uint32_t count = 0;
+    enum sf_status status = sf_scene_parse("methods", "{}", 2, NULL, 0, sf_console_log(), &scene);
+
+    if (!status)
+        status = sf_scene_controls(scene, sf_console_log(), &controls, &count);
+    for (uint32_t i = 0; i < count && !status; i++)
+        if (strcmp(controls[i].path, "method") == 0)
+            status = add_methods(verify, controls[i].choices);
+    free(controls);
+    sf_scene_destroy(&scene);
+    return status;
+}
+
+enum sf_status sf_verify_load(const struct sf_verify *verify, const char *path, const struct sf_verify_entry *entry,
+                              struct sf_scene **scene)
+{
+    struct sf_arguments arguments = *verify->arguments;
+
+    arguments.method = entry->method;
+    return sf_session_scene(&arguments, path, scene);
+}
+
+/* ---- how densely ---- */
+
+uint32_t sf_verify_stride(const struct sf_arguments *arguments, uint32_t particles)
+{
+    uint32_t stride = 1;
+
+    if (arguments->stride > 0)
+        return arguments->stride;
+    /* A pixel's cost grows with the spheres in its way, which are about as many as the particles' share. */
+    while (particles > 2048u * stride * stride)
+        stride *= 2;
+    return stride;
+}

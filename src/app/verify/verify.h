@@ -1,0 +1,92 @@
+/* What `sfumato verify` measured: verify.c fills it, table.c and json.c write it. */
+#ifndef SF_APP_VERIFY_H
+#define SF_APP_VERIFY_H
+
+#include "../options.h"
+#include "metrics.h"
+#include "sfumato/sfumato.h"
+
+/* A method with settings of its own: what is drawn, measured and timed. */
+struct sf_verify_entry {
+    char *method;
+};
+
+/* A number that is none, and where it is. */
+struct sf_verify_fault {
+    bool found;
+    char image[64];   /* of the frame's graph, or "particles" */
+    char pass[64];    /* that wrote the image last; none before it wrote one with such a number */
+    char others[256]; /* passes that wrote it before, with commas; "" */
+    uint32_t x, y;    /* pixel; of particles x is the index */
+    float value;
+};
+
+struct sf_verify_row {
+    struct sf_errors errors;
+    struct sf_verify_fault fault;
+    double ms, ms_least; /* the frame's passes on the device, simulation apart: median, minimum */
+    uint32_t samples;    /* of the time; 0: not taken */
+    char **notes;        /* where the method means to leave the reference's integral; NULL-terminated */
+};
+
+/* A scene at a frame. */
+struct sf_verify_case {
+    const char *path;
+    char *name; /* the file's, without ending */
+    char hash[17];
+    uint32_t frame, live;
+    uint32_t stride;            /* one pixel of each stride x stride was compared */
+    uint32_t unconverged;       /* pixels of the reference over its tolerance */
+    double seconds;             /* that the reference took */
+    struct sf_verify_row *rows; /* [entry_count] */
+};
+
+struct sf_verify {
+    const struct sf_arguments *arguments;
+    struct sf_device *device;
+    struct sf_device_info info;
+    char **paths; /* of scenes */
+    size_t path_count;
+    uint32_t *frames;
+    size_t frame_count;
+    struct sf_verify_entry *entries;
+    size_t entry_count;
+    struct sf_verify_case *cases; /* [path_count * frame_count] */
+    size_t case_count;            /* done */
+};
+
+enum sf_status sf_verify_run(const struct sf_arguments *arguments);
+
+/* ---- choice.c: what is to be measured ---- */
+
+/* The scenes named, or those of scenes/truth here or beside the program. SF_ERROR_USAGE when there are none. */
+enum sf_status sf_verify_find_scenes(struct sf_verify *verify);
+/* The methods of --methods, or all that draw smoke. SF_ERROR_USAGE names an unknown one, and the nearest known. */
+enum sf_status sf_verify_find_entries(struct sf_verify *verify);
+/* The scene as the entry draws it. */
+enum sf_status sf_verify_load(const struct sf_verify *verify, const char *path, const struct sf_verify_entry *entry,
+                              struct sf_scene **scene);
+/* How far apart the reference's pixels are: 1 for small scenes, so that large ones take bounded time. */
+uint32_t sf_verify_stride(const struct sf_arguments *arguments, uint32_t particles);
+
+/* ---- trace.c ---- */
+
+/* Looks for NaN in every image of the frame's graph, and for infinities in what comes out, after a frame was rendered with
+ * `options`; `frame` is that frame. The renderer is left with `options`. */
+enum sf_status sf_verify_trace(struct sf_renderer *renderer, const struct sf_renderer_options *options,
+                               const struct sf_frame *frame, struct sf_verify_fault *fault);
+
+/* ---- times.c ---- */
+
+/* Times every entry's frame, in turns, into the rows of the case; `scenes` as the entries draw them. */
+enum sf_status sf_verify_time(struct sf_verify *verify, struct sf_scene *const *scenes, struct sf_verify_case *result);
+
+/* ---- table.c, json.c ---- */
+
+void sf_verify_print(const struct sf_verify *verify);
+/* "T max, MSE" for bits of enum sf_goal; "" for none. */
+void sf_verify_missed_text(unsigned missed, char *text, size_t room);
+/* malloc'ed; NULL when memory is out. */
+char *sf_verify_json(const struct sf_verify *verify);
+
+#endif
