@@ -246,6 +246,7 @@ static struct sf_reference_pixel pixel_of(const struct sf_truth_result *result)
         .near = any ? (float)result->near : SF_NO_DEPTH,
         .far = any ? (float)result->far : SF_NO_DEPTH,
         .error = (float)result->error,
+        .evaluations = result->evaluations,
         .converged = result->converged,
     };
 }

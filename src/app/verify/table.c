@@ -73,8 +73,8 @@ static void print_notes(const struct sf_verify *verify)
         const struct sf_verify_case *result = &verify->cases[c];
 
         if (result->stride > 1)
-            printf("note: %s has %u particles: one pixel of each %ux%u is compared (--stride)\n", result->name,
-                   result->live, result->stride, result->stride);
+            printf("note: %s would take the reference long: one pixel of each %ux%u is compared (--stride 1: all)\n",
+                   result->name, result->stride, result->stride);
         if (result->live == 0)
             printf("note: %s, frame %u: there are no particles (--frames)\n", result->name, result->frame);
         if (result->unconverged > 0)

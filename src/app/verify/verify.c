@@ -11,6 +11,8 @@
 #include "../progress.h"
 #include "../session.h"
 
+enum { SAMPLE_SIDE = 8 }; /* pixels of the shorter side that tell what the reference will cost */
+
 /* What one case works with; index: the entry. */
 struct work {
     struct sf_verify *verify;
@@ -19,6 +21,8 @@ struct work {
     float **smoke, **depths; /* copies of the layers */
     struct sf_reference *reference;
     struct sf_reference_picture *picture;
+    double crossed;  /* spheres, by a ray */
+    uint32_t lights; /* of the scene */
 };
 
 static enum sf_status out_of_memory(void)
@@ -76,6 +80,7 @@ static enum sf_status open_reference(struct work *work, size_t entry, const stru
         status = copy_notes(reference, &work->result->rows[entry]);
     if (!status && !work->reference) {
         work->reference = reference;
+        work->crossed = sf_verify_crossed(frame);
         return SF_OK;
     }
     sf_reference_destroy(&reference);
@@ -146,23 +151,41 @@ static bool show_rows(void *user, uint64_t done, uint64_t total)
     return !sf_interrupted();
 }
 
+/* One pixel of each stride x stride into work->picture. */
+static enum sf_status render_reference(struct work *work, const char *kind, uint32_t stride)
+{
+    struct sf_argument_size size = work->verify->arguments->size;
+    struct sf_progress progress;
+    enum sf_status status;
+    char what[96];
+
+    snprintf(what, sizeof what, "%s %zu of %zu, %.40s", kind, work->verify->case_count + 1,
+             work->verify->path_count * work->verify->frame_count, work->result->name);
+    sf_progress_begin(&progress, what, "rows", (size.height - 1) / stride + 1);
+    status = sf_reference_render(work->reference, NULL, size.width, size.height, stride, show_rows, &progress,
+                                 &work->picture);
+    sf_progress_end(&progress);
+    return status;
+}
+
 static enum sf_status compute_reference(struct work *work)
 {
     const struct sf_arguments *arguments = work->verify->arguments;
+    struct sf_argument_size size = arguments->size;
     struct sf_verify_case *result = work->result;
-    uint32_t width = arguments->size.width, height = arguments->size.height;
-    struct sf_progress progress;
     uint64_t begin = sf_now_ns();
-    char what[96];
-    enum sf_status status;
+    uint32_t least = size.width < size.height ? size.width : size.height;
+    enum sf_status status = SF_OK;
 
-    result->stride = sf_verify_stride(arguments, result->live);
-    snprintf(what, sizeof what, "reference %zu of %zu, %.40s", work->verify->case_count + 1,
-             work->verify->path_count * work->verify->frame_count, result->name);
-    sf_progress_begin(&progress, what, "rows", (height - 1) / result->stride + 1);
-    status =
-        sf_reference_render(work->reference, NULL, width, height, result->stride, show_rows, &progress, &work->picture);
-    sf_progress_end(&progress);
+    result->stride = arguments->stride;
+    if (result->stride == 0) {
+        status = render_reference(work, "sample", least > SAMPLE_SIDE ? least / SAMPLE_SIDE : 1);
+        if (status)
+            return status;
+        result->stride = sf_verify_stride(work->picture, size.width, size.height, work->crossed, work->lights);
+        sf_reference_picture_destroy(&work->picture);
+    }
+    status = render_reference(work, "reference", result->stride);
     if (status)
         return status;
     result->unconverged = work->picture->unconverged;
@@ -214,6 +237,7 @@ static enum sf_status begin_case(struct work *work)
     if (status)
         return status;
     sf_scene_describe(work->scenes[0], &info);
+    work->lights = info.lights;
     snprintf(result->hash, sizeof result->hash, "%016llx", (unsigned long long)info.hash);
     return SF_OK;
 }

@@ -66,8 +66,12 @@ enum sf_status sf_verify_find_entries(struct sf_verify *verify);
 /* The scene as the entry draws it. */
 enum sf_status sf_verify_load(const struct sf_verify *verify, const char *path, const struct sf_verify_entry *entry,
                               struct sf_scene **scene);
-/* How far apart the reference's pixels are: 1 for small scenes, so that large ones take bounded time. */
-uint32_t sf_verify_stride(const struct sf_arguments *arguments, uint32_t particles);
+/* How many spheres a ray through the smoke meets, on average over all directions. */
+double sf_verify_crossed(const struct sf_frame *frame);
+/* How far apart the reference's pixels must be for it to take bounded time, going by a sparse sample of them: 1 for all
+ * but large clouds. */
+uint32_t sf_verify_stride(const struct sf_reference_picture *sample, uint32_t width, uint32_t height, double crossed,
+                          uint32_t lights);
 
 /* ---- trace.c ---- */
 

@@ -294,7 +294,8 @@ struct sf_reference_pixel {
     float near,
         far;     /* m of view depth: where the ray first enters smoke and last leaves it; SF_NO_DEPTH: it meets none */
     float error; /* estimate, of the radiance's worst channel */
-    bool converged; /* it is within the tolerance */
+    uint32_t evaluations; /* of what is integrated: what the pixel cost, the same on every machine */
+    bool converged;       /* it is within the tolerance */
 };
 struct sf_reference_picture {
     uint32_t width, height;            /* of `pixels`: the size asked for over the stride, rounded up */
