@@ -114,6 +114,8 @@ static const struct sf_option bench_options[] = {
 static const struct sf_option verify_options[] = {
     {"methods", 0, SF_OPTION_TEXT, FIELD(methods), .value = "LIST",
      .doc = "with commas between (default: all that draw smoke)"},
+    {"settings", 0, SF_OPTION_FLAG, FIELD(settings),
+     .doc = "each method also at coarser and finer settings, one changed at a time"},
     {"size", 's', SF_OPTION_SIZE, FIELD(size), .value = "WxH", .initial = "200x200", .doc = "pixels that are compared",
      .min = 1, .max = SIDE_MAX},
     {"frames", 'f', SF_OPTION_TEXT, FIELD(frames), .value = "LIST", .initial = "36",

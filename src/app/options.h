@@ -54,7 +54,7 @@ struct sf_arguments {
     struct sf_argument_size time_size;
     uint32_t stride;                   /* 0: by the number of particles */
     struct sf_argument_real tolerance; /* of the reference */
-    bool goals, require_goals;
+    bool goals, require_goals, settings;
     /* view */
     const char *present_mode; /* NULL: as last time */
     bool fullscreen, bare, paused, no_adapt;

@@ -113,18 +113,23 @@ enum sf_status sf_verify_find_scenes(struct sf_verify *verify)
 
 /* ---- methods ---- */
 
-/* Takes over `method`. */
-static enum sf_status add_entry(struct sf_verify *verify, char *method)
+/* Takes over `method` and `set`, which may be NULL. */
+static enum sf_status add_entry(struct sf_verify *verify, char *method, char *set, uint32_t sweep)
 {
     struct sf_verify_entry *entries =
         method ? realloc(verify->entries, (verify->entry_count + 1) * sizeof *entries) : NULL;
+    const char *dot = set ? strchr(set, '.') : NULL;
 
-    if (!entries) {
+    if (!entries || (sweep > 0 && !set)) {
         free(method);
+        free(set);
+        if (entries)
+            verify->entries = entries;
         return out_of_memory();
     }
     verify->entries = entries;
-    entries[verify->entry_count++] = (struct sf_verify_entry){.method = method};
+    entries[verify->entry_count++] =
+        (struct sf_verify_entry){.method = method, .set = set, .label = dot ? dot + 1 : "", .sweep = sweep};
     return SF_OK;
 }
 
@@ -164,7 +169,7 @@ static enum sf_status add_method(struct sf_verify *verify, const char *name, siz
             free(method);
             return status;
         }
-    return add_entry(verify, method);
+    return add_entry(verify, method, NULL, 0);
 }
 
 static enum sf_status add_methods(struct sf_verify *verify, const char *const *known)
@@ -187,6 +192,90 @@ static enum sf_status add_methods(struct sf_verify *verify, const char *const *k
     return status;
 }
 
+/* ---- settings ---- */
+
+/* What trades quality for time, under these names in any method's group. Of a choice every value is tried. */
+static const struct {
+    const char *key;
+    double values[8]; /* of a number; those out of its range are left out. 0 ends them */
+} qualities[] = {{"resolution", {0}}, {"steps", {2, 4, 8, 16, 32}}};
+
+static const struct sf_control *find_control(const struct sf_control *controls, uint32_t count, const char *path)
+{
+    for (uint32_t i = 0; i < count; i++)
+        if (strcmp(controls[i].path, path) == 0)
+            return &controls[i];
+    return NULL;
+}
+
+/* The method's own group, or that of the method that it is a kind of: "thick" for "thick-larsson". */
+static const struct sf_control *find_quality(const struct sf_control *controls, uint32_t count, const char *method,
+                                             const char *key)
+{
+    const struct sf_control *control;
+    char path[256];
+
+    snprintf(path, sizeof path, "%s.%s", method, key);
+    control = find_control(controls, count, path);
+    if (control)
+        return control;
+    snprintf(path, sizeof path, "%.*s.%s", (int)strcspn(method, "-"), method, key);
+    return find_control(controls, count, path);
+}
+
+/* The control at a value, as a set. */
+static enum sf_status add_setting(struct sf_verify *verify, const char *method, const struct sf_control *control,
+                                  double value, uint32_t sweep)
+{
+    struct sf_control changed = *control;
+
+    changed.value[0] = value;
+    return add_entry(verify, strdup(method), sf_control_print(&changed), sweep);
+}
+
+static enum sf_status add_settings(struct sf_verify *verify, const char *method, const struct sf_control *controls,
+                                   uint32_t count)
+{
+    enum sf_status status = SF_OK;
+
+    for (uint32_t q = 0; q < sizeof qualities / sizeof *qualities; q++) {
+        const struct sf_control *control = find_quality(controls, count, method, qualities[q].key);
+        const double *values = qualities[q].values;
+
+        if (!control)
+            continue;
+        if (control->kind == SF_CONTROL_CHOICE)
+            for (uint32_t i = 0; control->choices[i] && !status; i++)
+                status = add_setting(verify, method, control, i, q + 1);
+        for (uint32_t i = 0; control->kind != SF_CONTROL_CHOICE && values[i] > 0 && !status; i++)
+            if (values[i] >= control->min && values[i] <= control->max)
+                status = add_setting(verify, method, control, values[i], q + 1);
+    }
+    return status;
+}
+
+/* Each method's settings behind it. */
+static enum sf_status sweep(struct sf_verify *verify, const struct sf_control *controls, uint32_t count)
+{
+    struct sf_verify_entry *methods = verify->entries;
+    size_t method_count = verify->entry_count;
+    enum sf_status status = SF_OK;
+
+    verify->entries = NULL;
+    verify->entry_count = 0;
+    for (size_t i = 0; i < method_count; i++) {
+        if (status) {
+            free(methods[i].method);
+            continue;
+        }
+        status = add_entry(verify, methods[i].method, NULL, 0);
+        if (!status)
+            status = add_settings(verify, verify->entries[verify->entry_count - 1].method, controls, count);
+    }
+    free(methods);
+    return status;
+}
+
 /* The parameter table knows the methods; any scene shows it. */
 enum sf_status sf_verify_find_entries(struct sf_verify *verify)
 {
@@ -197,9 +286,10 @@ enum sf_status sf_verify_find_entries(struct sf_verify *verify)
 
     if (!status)
         status = sf_scene_controls(scene, sf_console_log(), &controls, &count);
-    for (uint32_t i = 0; i < count && !status; i++)
-        if (strcmp(controls[i].path, "method") == 0)
-            status = add_methods(verify, controls[i].choices);
+    if (!status)
+        status = add_methods(verify, find_control(controls, count, "method")->choices);
+    if (!status && verify->arguments->settings)
+        status = sweep(verify, controls, count);
     free(controls);
     sf_scene_destroy(&scene);
     return status;
@@ -209,9 +299,20 @@ enum sf_status sf_verify_load(const struct sf_verify *verify, const char *path, 
                               struct sf_scene **scene)
 {
     struct sf_arguments arguments = *verify->arguments;
+    const char **sets = malloc((arguments.sets.count + 1) * sizeof *sets);
+    enum sf_status status;
 
+    if (!sets)
+        return out_of_memory();
+    if (arguments.sets.count > 0)
+        memcpy(sets, arguments.sets.items, arguments.sets.count * sizeof *sets);
+    arguments.sets.items = sets;
+    if (entry->set)
+        sets[arguments.sets.count++] = entry->set;
     arguments.method = entry->method;
-    return sf_session_scene(&arguments, path, scene);
+    status = sf_session_scene(&arguments, path, scene);
+    free(sets);
+    return status;
 }
 
 /* ---- how densely ---- */

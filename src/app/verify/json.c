@@ -40,7 +40,10 @@ static json_t *errors_json(const struct sf_errors *errors)
 static json_t *row_json(const struct sf_verify *verify, const struct sf_verify_case *result, size_t entry)
 {
     const struct sf_verify_row *row = &result->rows[entry];
-    json_t *object = json_pack("{s:s}", "method", verify->entries[entry].method), *notes = json_array();
+    const struct sf_verify_entry *from = &verify->entries[entry];
+    json_t *object = json_pack("{s:s, s:o}", "method", from->method, "setting",
+                               from->set ? json_string(from->set) : json_null()),
+           *notes = json_array();
 
     json_object_update_new(object, errors_json(&row->errors));
     if (row->samples > 0)

@@ -133,7 +133,7 @@ unsigned sf_goals_missed(const struct sf_errors *errors)
     bool mean = fmax(errors->transmittance_mean, errors->alpha_mean) <= sf_goals.transmittance_mean;
     bool most = fmax(errors->transmittance_max, errors->alpha_max) <= sf_goals.transmittance_max;
     bool mse = errors->relative_mse <= sf_goals.relative_mse;
-    bool whole = errors->not_finite == 0;
+    bool whole = errors->not_finite == 0 && errors->pixels > 0;
 
     return (mean && whole ? 0u : SF_GOAL_MEAN) | (most && whole ? 0u : SF_GOAL_MAX) | (mse && whole ? 0u : SF_GOAL_MSE);
 }

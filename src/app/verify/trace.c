@@ -159,10 +159,10 @@ static json_t *read_graph(const struct sf_renderer *renderer)
     return found;
 }
 
-/* A particle that has a number that is none: the simulation's doing. */
-static void look_at_particles(const struct sf_frame *frame, struct sf_verify_fault *fault)
+void sf_verify_check_particles(const struct sf_frame *frame, struct sf_verify_fault *fault)
 {
-    for (uint32_t i = 0; frame->particles && i < frame->live; i++) {
+    *fault = (struct sf_verify_fault){.found = false};
+    for (uint32_t i = 0; i < frame->live; i++) {
         const struct sf_frame_particle *p = &frame->particles[i];
         const float values[] = {p->position[0], p->position[1], p->position[2], p->radius,     p->velocity[0],
                                 p->velocity[1], p->velocity[2], p->extinction,  p->temperature};
@@ -173,29 +173,33 @@ static void look_at_particles(const struct sf_frame *frame, struct sf_verify_fau
         snprintf(fault->pass, sizeof fault->pass, "sim.step");
         snprintf(fault->others, sizeof fault->others, "sim.emit");
         fault->x = i;
-        fault->y = 0;
         return;
     }
 }
 
-enum sf_status sf_verify_trace(struct sf_renderer *renderer, const struct sf_renderer_options *options,
-                               const struct sf_frame *frame, struct sf_verify_fault *fault)
+/* In between an infinity may be meant; in what comes out it never is. */
+static bool comes_out_wrong(const struct sf_frame *frame)
 {
-    uint32_t number = frame->frame, width = frame->width, height = frame->height;
-    bool wrong = false;
+    const float *const out[] = {frame->color_float, frame->smoke_float, frame->smoke_depths};
+    struct sf_verify_fault fault;
+
+    for (size_t i = 0; i < sizeof out / sizeof *out; i++)
+        if (look(out[i], frame->width, frame->height, 4, true, &fault))
+            return true;
+    return look(frame->depth, frame->width, frame->height, 1, true, &fault);
+}
+
+enum sf_status sf_verify_trace(struct sf_renderer *renderer, const struct sf_renderer_options *options,
+                               const struct sf_frame *frame, bool thorough, struct sf_verify_fault *fault)
+{
+    uint32_t number = frame->frame;
+    bool wrong = comes_out_wrong(frame);
     enum sf_status status, restored;
     json_t *graph;
 
     *fault = (struct sf_verify_fault){.found = false};
-    look_at_particles(frame, fault);
-    if (fault->found)
+    if (!wrong && !thorough)
         return SF_OK;
-    /* In between an infinity may be meant; in what comes out it never is. */
-    const float *const out[] = {frame->color_float, frame->smoke_float, frame->smoke_depths};
-    for (size_t i = 0; i < 3 && !wrong; i++)
-        wrong = out[i] && look(out[i], width, height, 4, true, fault);
-    wrong = wrong || (frame->depth && look(frame->depth, width, height, 1, true, fault));
-    *fault = (struct sf_verify_fault){.found = false};
     graph = read_graph(renderer);
     if (!graph)
         return sf_console_fail(SF_ERROR_MEMORY, "out of memory");

@@ -101,24 +101,24 @@ static enum sf_status take_frame(struct work *work, size_t entry, const struct s
 static enum sf_status draw_entry(struct work *work, size_t entry, struct sf_renderer *renderer)
 {
     const struct sf_renderer_options options = drawing_options(work->verify);
-    struct sf_verify_fault *fault = &work->result->rows[entry].fault;
+    struct sf_verify_row *row = &work->result->rows[entry];
     struct sf_frame frame;
     uint64_t ticket;
     enum sf_status status = sf_renderer_render(renderer, work->result->frame, &ticket);
 
     if (!status)
         status = sf_renderer_wait(renderer, ticket, &frame);
-    if (!status)
-        status = take_frame(work, entry, &frame);
-    if (!status && (entry == 0 || !work->result->rows[0].fault.found))
-        status = sf_verify_trace(renderer, &options, &frame, fault);
-    if (status || (fault->found && strcmp(fault->image, "particles") == 0))
+    if (status)
         return status;
-    /* Looking has made the graph anew, and the frame's memory with it. */
-    status = sf_renderer_render(renderer, work->result->frame, &ticket);
+    sf_verify_check_particles(&frame, &row->fault);
+    if (row->fault.found)
+        return SF_OK;
+    status = take_frame(work, entry, &frame);
     if (!status)
-        status = sf_renderer_wait(renderer, ticket, &frame);
-    return status ? status : open_reference(work, entry, &frame);
+        status = open_reference(work, entry, &frame);
+    if (!status)
+        status = sf_verify_trace(renderer, &options, &frame, work->verify->entries[entry].sweep == 0, &row->fault);
+    return status;
 }
 
 static enum sf_status draw_entries(struct work *work)
@@ -135,6 +135,8 @@ static enum sf_status draw_entries(struct work *work)
             status = sf_renderer_set_scene(renderer, work->scenes[i]);
         if (!status)
             status = draw_entry(work, i, renderer);
+        if (!work->reference)
+            break; /* the particles are no good, for any of them */
         if (!status && sf_interrupted())
             status = SF_ERROR_INTERRUPTED;
     }
@@ -274,7 +276,7 @@ static enum sf_status measure_case(struct sf_verify *verify, const char *path, u
         status = compute_reference(&work);
     if (!status && work.picture)
         status = compare(&work);
-    if (!status && verify->arguments->repeats > 0)
+    if (!status && work.picture && verify->arguments->repeats > 0)
         status = sf_verify_time(verify, work.scenes, result);
     end_case(&work);
     if (!status)
@@ -336,7 +338,8 @@ static enum sf_status report(const struct sf_verify *verify)
     return SF_OK;
 }
 
-static void say_fault(const struct sf_verify_case *result, const char *method, const struct sf_verify_fault *fault)
+static void say_fault(const struct sf_verify_case *result, const struct sf_verify_entry *entry,
+                      const struct sf_verify_fault *fault)
 {
     char others[300] = "";
 
@@ -347,9 +350,10 @@ static void say_fault(const struct sf_verify_case *result, const char *method, c
     }
     if (fault->others[0])
         snprintf(others, sizeof others, " (or %s before it)", fault->others);
-    sf_console_fail(SF_ERROR_INTERNAL, "%s, frame %u, method %s: %g in pixel (%u, %u) of image %s: pass %s made it%s",
-                    result->path, result->frame, method, (double)fault->value, fault->x, fault->y, fault->image,
-                    fault->pass, others);
+    sf_console_fail(SF_ERROR_INTERNAL,
+                    "%s, frame %u, method %s%s%s: %g in pixel (%u, %u) of image %s: pass %s made it%s", result->path,
+                    result->frame, entry->method, entry->set ? ", " : "", entry->set ? entry->set : "",
+                    (double)fault->value, fault->x, fault->y, fault->image, fault->pass, others);
 }
 
 /* What was found decides about the end: numbers that are none, and missed goals where they are asked for. */
@@ -365,7 +369,7 @@ static enum sf_status judge(const struct sf_verify *verify)
             missed += sf_goals_missed(&row->errors) != 0;
             if (!row->fault.found)
                 continue;
-            say_fault(&verify->cases[c], verify->entries[i].method, &row->fault);
+            say_fault(&verify->cases[c], &verify->entries[i], &row->fault);
             status = SF_ERROR_INTERNAL;
         }
     }
@@ -388,8 +392,10 @@ static void finish(struct sf_verify *verify)
         free(result->rows);
         free(result->name);
     }
-    for (size_t i = 0; i < verify->entry_count; i++)
+    for (size_t i = 0; i < verify->entry_count; i++) {
         free(verify->entries[i].method);
+        free(verify->entries[i].set);
+    }
     for (size_t i = 0; i < verify->path_count; i++)
         free(verify->paths[i]);
     free(verify->cases);

@@ -6,9 +6,12 @@
 #include "metrics.h"
 #include "sfumato/sfumato.h"
 
-/* A method with settings of its own: what is drawn, measured and timed. */
+/* A method, at a scene's own settings or with one of them changed: what is drawn, measured and timed. */
 struct sf_verify_entry {
     char *method;
+    char *set;         /* "thick.steps=4"; NULL: the scene's own settings */
+    const char *label; /* "steps=4", the end of `set`; "" */
+    uint32_t sweep;    /* number of the parameter that is changed; 0: none */
 };
 
 /* A number that is none, and where it is. */
@@ -61,7 +64,8 @@ enum sf_status sf_verify_run(const struct sf_arguments *arguments);
 
 /* The scenes named, or those of scenes/truth here or beside the program. SF_ERROR_USAGE when there are none. */
 enum sf_status sf_verify_find_scenes(struct sf_verify *verify);
-/* The methods of --methods, or all that draw smoke. SF_ERROR_USAGE names an unknown one, and the nearest known. */
+/* The methods of --methods, or all that draw smoke, each followed by its settings when --settings is given. SF_ERROR_USAGE
+ * names an unknown method, and the nearest known. */
 enum sf_status sf_verify_find_entries(struct sf_verify *verify);
 /* The scene as the entry draws it. */
 enum sf_status sf_verify_load(const struct sf_verify *verify, const char *path, const struct sf_verify_entry *entry,
@@ -75,21 +79,41 @@ uint32_t sf_verify_stride(const struct sf_reference_picture *sample, uint32_t wi
 
 /* ---- trace.c ---- */
 
-/* Looks for NaN in every image of the frame's graph, and for infinities in what comes out, after a frame was rendered with
- * `options`; `frame` is that frame. The renderer is left with `options`. */
+/* A particle with a number that is none: the simulation's doing. */
+void sf_verify_check_particles(const struct sf_frame *frame, struct sf_verify_fault *fault);
+/* Looks for NaN and infinities in what came out, and, if there are or `thorough`, for NaN in every image of the frame's
+ * graph. `frame` is the renderer's last, rendered with `options`, which it has again afterwards; the frame is gone. */
 enum sf_status sf_verify_trace(struct sf_renderer *renderer, const struct sf_renderer_options *options,
-                               const struct sf_frame *frame, struct sf_verify_fault *fault);
+                               const struct sf_frame *frame, bool thorough, struct sf_verify_fault *fault);
 
 /* ---- times.c ---- */
 
 /* Times every entry's frame, in turns, into the rows of the case; `scenes` as the entries draw them. */
 enum sf_status sf_verify_time(struct sf_verify *verify, struct sf_scene *const *scenes, struct sf_verify_case *result);
 
+/* ---- summary.c ---- */
+
+/* An entry over all scenes. */
+struct sf_verify_summary {
+    size_t rows;                                                                /* that were compared, and have smoke */
+    double transmittance_mean, transmittance_max, alpha_max, relative_mse, p99; /* the worst of all */
+    double bias;                                                                /* the one farthest from 0 */
+    double typical_mse; /* geometric mean; relative_mse below 1e-12 counts as that */
+    double ms;          /* geometric mean; 0: no times */
+    size_t missed;      /* rows that miss a goal */
+};
+void sf_verify_summarise(const struct sf_verify *verify, size_t entry, struct sf_verify_summary *summary);
+/* "T max, MSE" for bits of enum sf_goal; "" for none. */
+void sf_verify_missed_text(unsigned missed, char *text, size_t room);
+/* "thick", "thick steps=4". */
+void sf_verify_entry_text(const struct sf_verify_entry *entry, char *text, size_t room);
+/* The notes about a case and its rows that were not given for an earlier case, one after the other: the text for number
+ * `index`, or false behind the last. */
+bool sf_verify_note(const struct sf_verify *verify, size_t index, char *text, size_t room);
+
 /* ---- table.c, json.c ---- */
 
 void sf_verify_print(const struct sf_verify *verify);
-/* "T max, MSE" for bits of enum sf_goal; "" for none. */
-void sf_verify_missed_text(unsigned missed, char *text, size_t room);
 /* malloc'ed; NULL when memory is out. */
 char *sf_verify_json(const struct sf_verify *verify);
 
