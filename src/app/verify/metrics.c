@@ -128,6 +128,51 @@ enum sf_status sf_errors_measure(const struct sf_layers *layers, const struct sf
     return SF_OK;
 }
 
+double sf_errors_brightness(const float *smoke, const struct sf_reference_pixel *truth)
+{
+    static const double weights[3] = {0.2126, 0.7152, 0.0722};
+    double sum = 0;
+
+    for (int c = 0; c < 3; c++)
+        sum += weights[c] * ((double)smoke[c] - truth->radiance[c]);
+    return isfinite(sum) ? sum : NAN;
+}
+
+static double round_up(double value)
+{
+    double power = pow(10, floor(log10(value))), share = value / power;
+
+    return power * (share <= 1 ? 1 : share <= 2 ? 2 : share <= 5 ? 5 : 10);
+}
+
+enum sf_status sf_errors_scale(const struct sf_layers *layers, const struct sf_reference_picture *reference,
+                               uint32_t stride, double least, double *scale)
+{
+    size_t count = (size_t)reference->width * reference->height, smoky = 0;
+    double *values = malloc((count + 1) * sizeof *values);
+
+    *scale = least;
+    if (!values)
+        return sf_console_fail(SF_ERROR_MEMORY, "out of memory");
+    for (size_t i = 0; i < count; i++) {
+        uint32_t x = sf_errors_pixel((uint32_t)(i % reference->width), stride, layers->width);
+        uint32_t y = sf_errors_pixel((uint32_t)(i / reference->width), stride, layers->height);
+        const float *smoke = &layers->smoke[4 * ((size_t)y * layers->width + x)];
+        double off = fabs(sf_errors_brightness(smoke, &reference->pixels[i]));
+
+        if (isfinite(off) && (reference->pixels[i].transmittance < 1 || smoke[3] > 0))
+            values[smoky++] = off;
+    }
+    if (smoky > 0) {
+        qsort(values, smoky, sizeof *values, compare_doubles);
+        double most = values[(smoky * 995 + 999) / 1000 - 1];
+        if (most > least)
+            *scale = round_up(most);
+    }
+    free(values);
+    return SF_OK;
+}
+
 unsigned sf_goals_missed(const struct sf_errors *errors)
 {
     bool mean = fmax(errors->transmittance_mean, errors->alpha_mean) <= sf_goals.transmittance_mean;

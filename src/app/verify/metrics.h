@@ -33,6 +33,13 @@ enum sf_status sf_errors_measure(const struct sf_layers *layers, const struct sf
 /* The pixel of a side of `side` that a block stands for, as sf_reference_render chooses it. */
 uint32_t sf_errors_pixel(uint32_t block, uint32_t stride, uint32_t side);
 
+/* 1, 2 or 5 times a power of ten: not below the differences in brightness of 99.5 % of the pixels that smoke touches, nor
+ * below `least`. Brightness is the luminance of linear Rec. 709. SF_ERROR_MEMORY. */
+enum sf_status sf_errors_scale(const struct sf_layers *layers, const struct sf_reference_picture *reference,
+                               uint32_t stride, double least, double *scale);
+/* Brightness of L - R, in W/(m2 sr); NaN where the method has no number. */
+double sf_errors_brightness(const float *smoke, const struct sf_reference_pixel *truth);
+
 /* What is asked of a method at its own settings. */
 struct sf_goals {
     double transmittance_mean, transmittance_max, relative_mse;

@@ -18,11 +18,11 @@ struct work {
     struct sf_verify *verify;
     struct sf_verify_case *result;
     struct sf_scene **scenes;
-    float **smoke, **depths; /* copies of the layers */
+    struct sf_layers *layers; /* copies */
+    struct sf_scene_info info;
     struct sf_reference *reference;
     struct sf_reference_picture *picture;
-    double crossed;  /* spheres, by a ray */
-    uint32_t lights; /* of the scene */
+    double crossed; /* spheres, by a ray */
 };
 
 static enum sf_status out_of_memory(void)
@@ -42,6 +42,7 @@ static struct sf_renderer_options drawing_options(const struct sf_verify *verify
                                         .particles = true};
 }
 
+/* malloc'ed; NULL when memory is out. */
 static float *copy_layer(const float *layer, const struct sf_frame *frame)
 {
     size_t bytes = (size_t)frame->width * frame->height * 4 * sizeof *layer;
@@ -89,13 +90,17 @@ static enum sf_status open_reference(struct work *work, size_t entry, const stru
 
 static enum sf_status take_frame(struct work *work, size_t entry, const struct sf_frame *frame)
 {
+    struct sf_layers *layers = &work->layers[entry];
+
     if (!frame->smoke_float || !frame->smoke_depths)
         return sf_console_fail(SF_ERROR_USAGE, "verify: method %s has no layers of the smoke alone to be compared",
                                work->verify->entries[entry].method);
-    work->smoke[entry] = copy_layer(frame->smoke_float, frame);
-    work->depths[entry] = copy_layer(frame->smoke_depths, frame);
+    *layers = (struct sf_layers){.width = frame->width,
+                                 .height = frame->height,
+                                 .smoke = copy_layer(frame->smoke_float, frame),
+                                 .depths = copy_layer(frame->smoke_depths, frame)};
     work->result->live = frame->live;
-    return work->smoke[entry] && work->depths[entry] ? SF_OK : out_of_memory();
+    return layers->smoke && layers->depths ? SF_OK : out_of_memory();
 }
 
 static enum sf_status draw_entry(struct work *work, size_t entry, struct sf_renderer *renderer)
@@ -161,8 +166,8 @@ static enum sf_status render_reference(struct work *work, const char *kind, uint
     enum sf_status status;
     char what[96];
 
-    snprintf(what, sizeof what, "%s %zu of %zu, %.40s", kind, work->verify->case_count + 1,
-             work->verify->path_count * work->verify->frame_count, work->result->name);
+    snprintf(what, sizeof what, "%s %zu of %zu, %.40s", kind, work->verify->case_count + 1, work->verify->case_total,
+             work->result->name);
     sf_progress_begin(&progress, what, "rows", (size.height - 1) / stride + 1);
     status = sf_reference_render(work->reference, NULL, size.width, size.height, stride, show_rows, &progress,
                                  &work->picture);
@@ -184,7 +189,7 @@ static enum sf_status compute_reference(struct work *work)
         status = render_reference(work, "sample", least > SAMPLE_SIDE ? least / SAMPLE_SIDE : 1);
         if (status)
             return status;
-        result->stride = sf_verify_stride(work->picture, size.width, size.height, work->crossed, work->lights);
+        result->stride = sf_verify_stride(work->picture, size.width, size.height, work->crossed, work->info.lights);
         sf_reference_picture_destroy(&work->picture);
     }
     status = render_reference(work, "reference", result->stride);
@@ -198,49 +203,36 @@ static enum sf_status compute_reference(struct work *work)
 static enum sf_status compare(struct work *work)
 {
     const struct sf_arguments *arguments = work->verify->arguments;
+    const struct sf_verify_drawn drawn = {work->layers, work->picture, work->info.tone, work->info.exposure};
     enum sf_status status = SF_OK;
 
-    for (size_t i = 0; i < work->verify->entry_count && !status; i++) {
-        const struct sf_layers layers = {.width = arguments->size.width,
-                                         .height = arguments->size.height,
-                                         .smoke = work->smoke[i],
-                                         .depths = work->depths[i]};
-
-        status = sf_errors_measure(&layers, work->picture, work->result->stride, &work->result->rows[i].errors);
-    }
+    for (size_t i = 0; i < work->verify->entry_count && !status; i++)
+        status =
+            sf_errors_measure(&work->layers[i], work->picture, work->result->stride, &work->result->rows[i].errors);
+    if (!status && arguments->folder)
+        status = sf_verify_write_pictures(work->verify, work->result, &drawn);
     return status;
 }
 
 /* ---- a case ---- */
 
-static char *name_of(const char *path)
-{
-    const char *slash = strrchr(path, '/'), *stem = slash ? slash + 1 : path, *dot = strrchr(stem, '.');
-
-    return strndup(stem, dot && dot > stem ? (size_t)(dot - stem) : strlen(stem));
-}
-
 static enum sf_status begin_case(struct work *work)
 {
     struct sf_verify *verify = work->verify;
     struct sf_verify_case *result = work->result;
-    struct sf_scene_info info;
     enum sf_status status = SF_OK;
 
-    result->name = name_of(result->path);
     result->rows = calloc(verify->entry_count, sizeof *result->rows);
     work->scenes = calloc(verify->entry_count, sizeof(struct sf_scene *));
-    work->smoke = calloc(verify->entry_count, sizeof(float *));
-    work->depths = calloc(verify->entry_count, sizeof(float *));
-    if (!result->name || !result->rows || !work->scenes || !work->smoke || !work->depths)
+    work->layers = calloc(verify->entry_count, sizeof *work->layers);
+    if (!result->rows || !work->scenes || !work->layers)
         return out_of_memory();
     for (size_t i = 0; i < verify->entry_count && !status; i++)
         status = sf_verify_load(verify, result->path, &verify->entries[i], &work->scenes[i]);
     if (status)
         return status;
-    sf_scene_describe(work->scenes[0], &info);
-    work->lights = info.lights;
-    snprintf(result->hash, sizeof result->hash, "%016llx", (unsigned long long)info.hash);
+    sf_scene_describe(work->scenes[0], &work->info);
+    snprintf(result->hash, sizeof result->hash, "%016llx", (unsigned long long)work->info.hash);
     return SF_OK;
 }
 
@@ -249,27 +241,23 @@ static void end_case(struct work *work)
     for (size_t i = 0; i < work->verify->entry_count; i++) {
         if (work->scenes)
             sf_scene_destroy(&work->scenes[i]);
-        if (work->smoke)
-            free(work->smoke[i]);
-        if (work->depths)
-            free(work->depths[i]);
+        if (work->layers) {
+            free((void *)work->layers[i].smoke);
+            free((void *)work->layers[i].depths);
+        }
     }
     free(work->scenes);
-    free(work->smoke);
-    free(work->depths);
+    free(work->layers);
     sf_reference_picture_destroy(&work->picture);
     sf_reference_destroy(&work->reference);
 }
 
-static enum sf_status measure_case(struct sf_verify *verify, const char *path, uint32_t frame)
+static enum sf_status measure_case(struct sf_verify *verify)
 {
     struct sf_verify_case *result = &verify->cases[verify->case_count];
     struct work work = {.verify = verify, .result = result};
-    enum sf_status status;
+    enum sf_status status = begin_case(&work);
 
-    result->path = path;
-    result->frame = frame;
-    status = begin_case(&work);
     if (!status)
         status = draw_entries(&work);
     if (!status && work.reference)
@@ -279,12 +267,41 @@ static enum sf_status measure_case(struct sf_verify *verify, const char *path, u
     if (!status && work.picture && verify->arguments->repeats > 0)
         status = sf_verify_time(verify, work.scenes, result);
     end_case(&work);
-    if (!status)
-        verify->case_count++;
-    return status;
+    if (status)
+        return status;
+    verify->case_count++;
+    return verify->arguments->folder ? sf_verify_write_page(verify, verify->case_count == verify->case_total) : SF_OK;
 }
 
 /* ---- the command ---- */
+
+static char *name_of(const char *path)
+{
+    const char *slash = strrchr(path, '/'), *stem = slash ? slash + 1 : path, *dot = strrchr(stem, '.');
+
+    return strndup(stem, dot && dot > stem ? (size_t)(dot - stem) : strlen(stem));
+}
+
+/* Every scene at every frame. */
+static enum sf_status list_cases(struct sf_verify *verify)
+{
+    size_t count = verify->path_count * verify->frame_count;
+
+    verify->cases = calloc(count, sizeof *verify->cases);
+    if (!verify->cases)
+        return out_of_memory();
+    verify->case_total = count;
+    for (size_t i = 0; i < count; i++) {
+        struct sf_verify_case *result = &verify->cases[i];
+
+        result->path = verify->paths[i / verify->frame_count];
+        result->frame = verify->frames[i % verify->frame_count];
+        result->name = name_of(result->path);
+        if (!result->name)
+            return out_of_memory();
+    }
+    return SF_OK;
+}
 
 /* All scenes are read before anything is drawn, so that a mistake in the last one does not come after minutes. */
 static enum sf_status check_scenes(const struct sf_verify *verify)
@@ -303,12 +320,19 @@ static enum sf_status check_scenes(const struct sf_verify *verify)
 static enum sf_status begin(struct sf_verify *verify)
 {
     const struct sf_arguments *arguments = verify->arguments;
-    enum sf_status status = sf_session_frames(arguments, &verify->frames, &verify->frame_count);
+    enum sf_status status;
 
+    if (arguments->overwrite && !arguments->folder)
+        return sf_console_fail(SF_ERROR_USAGE, "verify: --overwrite needs --output");
+    status = sf_session_frames(arguments, &verify->frames, &verify->frame_count);
     if (!status)
         status = sf_verify_find_entries(verify);
     if (!status)
         status = sf_verify_find_scenes(verify);
+    if (!status)
+        status = list_cases(verify);
+    if (!status && arguments->folder)
+        status = sf_verify_folder_open(verify);
     if (!status)
         status = check_scenes(verify);
     if (!status)
@@ -318,8 +342,7 @@ static enum sf_status begin(struct sf_verify *verify)
     if (status)
         return status;
     sf_device_describe(verify->device, &verify->info);
-    verify->cases = calloc(verify->path_count * verify->frame_count, sizeof *verify->cases);
-    return verify->cases ? SF_OK : out_of_memory();
+    return SF_OK;
 }
 
 static enum sf_status report(const struct sf_verify *verify)
@@ -381,7 +404,7 @@ static enum sf_status judge(const struct sf_verify *verify)
 
 static void finish(struct sf_verify *verify)
 {
-    for (size_t c = 0; verify->cases && c < verify->path_count * verify->frame_count; c++) {
+    for (size_t c = 0; c < verify->case_total; c++) {
         struct sf_verify_case *result = &verify->cases[c];
 
         for (size_t i = 0; result->rows && i < verify->entry_count; i++) {
@@ -410,9 +433,11 @@ enum sf_status sf_verify_run(const struct sf_arguments *arguments)
     struct sf_verify verify = {.arguments = arguments};
     enum sf_status status = begin(&verify), told;
 
-    for (size_t i = 0; i < verify.path_count && !status; i++)
-        for (size_t f = 0; f < verify.frame_count && !status; f++)
-            status = measure_case(&verify, verify.paths[i], verify.frames[f]);
+    /* A page that says that it is not complete comes first: by it the pictures are known to be ours. */
+    if (!status && arguments->folder)
+        status = sf_verify_write_page(&verify, false);
+    while (!status && verify.case_count < verify.case_total)
+        status = measure_case(&verify);
     if (!status)
         status = sf_session_validated(arguments, verify.device);
     /* What is done is shown, even when the rest is not. */
@@ -421,8 +446,9 @@ enum sf_status sf_verify_run(const struct sf_arguments *arguments)
         status = status ? status : told;
     }
     if (status == SF_ERROR_INTERRUPTED)
-        sf_console_note("interrupted: %zu of %zu scenes were compared", verify.case_count,
-                        verify.path_count * verify.frame_count);
+        sf_console_note("interrupted: %zu of %zu scenes were compared", verify.case_count, verify.case_total);
+    if (!status && arguments->folder)
+        sf_console_note("wrote %s/index.html", arguments->folder);
     if (!status)
         status = judge(&verify);
     finish(&verify);

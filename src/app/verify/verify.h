@@ -41,6 +41,8 @@ struct sf_verify_case {
     uint32_t stride;            /* one pixel of each stride x stride was compared */
     uint32_t unconverged;       /* pixels of the reference over its tolerance */
     double seconds;             /* that the reference took */
+    char base[96];              /* what its files in the folder of -o begin with */
+    double scale;               /* W/(m2 sr): the ends of the colours of its difference pictures */
     struct sf_verify_row *rows; /* [entry_count] */
 };
 
@@ -54,11 +56,19 @@ struct sf_verify {
     size_t frame_count;
     struct sf_verify_entry *entries;
     size_t entry_count;
-    struct sf_verify_case *cases; /* [path_count * frame_count] */
-    size_t case_count;            /* done */
+    struct sf_verify_case *cases;  /* every scene at every frame */
+    size_t case_total, case_count; /* of these the first ones are done */
 };
 
 enum sf_status sf_verify_run(const struct sf_arguments *arguments);
+
+/* What is drawn of a case: the layers of each entry, and the reference. */
+struct sf_verify_drawn {
+    const struct sf_layers *layers; /* [entry_count] */
+    const struct sf_reference_picture *reference;
+    const char *tone;
+    float exposure;
+};
 
 /* ---- choice.c: what is to be measured ---- */
 
@@ -116,5 +126,32 @@ bool sf_verify_note(const struct sf_verify *verify, size_t index, char *text, si
 void sf_verify_print(const struct sf_verify *verify);
 /* malloc'ed; NULL when memory is out. */
 char *sf_verify_json(const struct sf_verify *verify);
+
+/* ---- folder.c: the folder of -o ---- */
+
+/* Names the cases' files, makes the folder, and sees that nothing in it is replaced but what an earlier run made, and that
+ * only with --overwrite. SF_ERROR_IO says what stands in the way. */
+enum sf_status sf_verify_folder_open(struct sf_verify *verify);
+/* "DIR/name", malloc'ed; NULL when memory is out. */
+char *sf_verify_folder_path(const struct sf_verify *verify, const char *name);
+/* The name of a picture of a case: "BASE-reference.png", "BASE-thick.png", "BASE-thick-difference.png"; `method` NULL: the
+ * reference. */
+void sf_verify_picture_name(const struct sf_verify_case *result, const char *method, bool difference, char *name,
+                            size_t room);
+/* By this a page of ours is known. */
+#define SF_VERIFY_MARK "<meta name=\"generator\" content=\"sfumato verify\"/>"
+
+/* ---- pictures.c ---- */
+
+/* Writes the case's pictures into the folder and sets its scale. */
+enum sf_status sf_verify_write_pictures(const struct sf_verify *verify, struct sf_verify_case *result,
+                                        const struct sf_verify_drawn *drawn);
+/* The colour of a difference as sRGB 0..1: `share` -1 blue, 0 white, 1 red. */
+void sf_verify_heat(double share, double rgb[3]);
+
+/* ---- page.c ---- */
+
+/* index.html, plot.svg and verify.json, of what is done so far. */
+enum sf_status sf_verify_write_page(const struct sf_verify *verify, bool finished);
 
 #endif
