@@ -2,7 +2,6 @@
 #include "verify.h"
 
 #include <dirent.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,7 +12,6 @@
 #include "../session.h"
 
 enum { PATH_BYTES = 4096 };
-static const double SECONDS_MOST = 60; /* of one core, for the reference of one scene */
 static const char truth_scenes[] = "scenes/truth";
 
 static enum sf_status out_of_memory(void)
@@ -156,6 +154,10 @@ static enum sf_status add_method(struct sf_verify *verify, const char *name, siz
 
     if (!method)
         return out_of_memory();
+    if (length == 0) {
+        free(method);
+        return sf_console_fail(SF_ERROR_USAGE, "--methods %s: a name is empty", verify->arguments->methods);
+    }
     for (size_t i = 0; i < count && !found; i++)
         found = strcmp(known[i], method) == 0;
     if (!found) {
@@ -313,30 +315,4 @@ enum sf_status sf_verify_load(const struct sf_verify *verify, const char *path, 
     status = sf_session_scene(&arguments, path, scene);
     free(sets);
     return status;
-}
-
-/* ---- how densely ---- */
-
-double sf_verify_crossed(const struct sf_frame *frame)
-{
-    double disc = 0, size[3];
-
-    for (uint32_t i = 0; i < frame->live; i++)
-        disc += 3.14159 * frame->particles[i].radius * frame->particles[i].radius;
-    for (int i = 0; i < 3; i++)
-        size[i] = (double)frame->bounds_max[i] - frame->bounds_min[i];
-    return disc > 0 ? disc / ((size[0] * size[1] + size[1] * size[2] + size[2] * size[0]) / 3) : 0;
-}
-
-/* Measured on one core: 0.44 to 0.66 us an evaluation where a ray meets few spheres, 2.4 where it meets 13, 8.2
- * at 104, 82 at 1276. The estimate goes by counts alone, so that the choice is the same everywhere. */
-uint32_t sf_verify_stride(const struct sf_reference_picture *sample, uint32_t width, uint32_t height, double crossed,
-                          uint32_t lights)
-{
-    double evaluations = 0, pixels = (double)sample->width * sample->height, seconds;
-
-    for (size_t i = 0; i < (size_t)sample->width * sample->height; i++)
-        evaluations += sample->pixels[i].evaluations;
-    seconds = evaluations / pixels * width * height * (0.5e-6 + 0.1e-6 * crossed) * (lights > 1 ? lights : 1);
-    return (uint32_t)fmax(1, ceil(sqrt(seconds / SECONDS_MOST)));
 }

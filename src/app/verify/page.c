@@ -30,7 +30,7 @@ static const char style[] =
     ".note{background:#fff6dd;border-left:4px solid #e0a800;padding:6px 12px;margin:8px 0}"
     ".fault{background:#fde7e5;border-left:4px solid #b3261e;padding:6px 12px;margin:8px 0}"
     ".both{display:flex;flex-wrap:wrap;gap:8px 28px;align-items:flex-start}"
-    ".both>svg{flex:1 1 380px;min-width:0;max-width:720px}svg{max-width:100%;height:auto}";
+    ".both svg{flex:1 1 380px;min-width:0;max-width:720px}svg{max-width:100%;height:auto}";
 
 /* ---- tables ---- */
 

@@ -69,13 +69,13 @@ static bool said_before(const struct sf_verify *verify, size_t last, size_t entr
     return false;
 }
 
-/* Those about the case itself: false behind the third. */
-static bool case_note(const struct sf_verify_case *result, size_t index, char *text, size_t room)
+/* Those about the case itself: false behind the third. `chosen`: --stride was given. */
+static bool case_note(const struct sf_verify_case *result, bool chosen, size_t index, char *text, size_t room)
 {
     text[0] = '\0';
     if (index == 0 && result->stride > 1)
-        snprintf(text, room, "%s: the reference would take long: one pixel of each %ux%u is compared (--stride 1: all)",
-                 result->name, result->stride, result->stride);
+        snprintf(text, room, "%s: one pixel of each %ux%u is compared%s", result->name, result->stride, result->stride,
+                 chosen ? "" : ": the reference would take long (--stride 1: all)");
     if (index == 1 && result->live == 0)
         snprintf(text, room, "%s: frame %u has no particles (--frames)", result->name, result->frame);
     if (index == 2 && result->unconverged > 0)
@@ -92,7 +92,7 @@ bool sf_verify_note(const struct sf_verify *verify, size_t index, char *text, si
     for (size_t c = 0; c < verify->case_count; c++) {
         const struct sf_verify_case *result = &verify->cases[c];
 
-        for (size_t i = 0; case_note(result, i, text, room); i++)
+        for (size_t i = 0; case_note(result, verify->arguments->stride > 0, i, text, room); i++)
             if (text[0] && seen++ == index)
                 return true;
         for (size_t i = 0; i < verify->entry_count; i++) {

@@ -11,7 +11,10 @@
 #include "../progress.h"
 #include "../session.h"
 
-enum { SAMPLE_SIDE = 8 }; /* pixels of the shorter side that tell what the reference will cost */
+enum {
+    SAMPLE_SIDE = 8,      /* pixels of the shorter side that tell what the reference will cost */
+    LIVE_THOROUGH = 20000 /* particles up to which every image of the graph is looked at: a frame for each of them */
+};
 
 /* What one case works with; index: the entry. */
 struct work {
@@ -93,7 +96,8 @@ static enum sf_status take_frame(struct work *work, size_t entry, const struct s
     struct sf_layers *layers = &work->layers[entry];
 
     if (!frame->smoke_float || !frame->smoke_depths)
-        return sf_console_fail(SF_ERROR_USAGE, "verify: method %s has no layers of the smoke alone to be compared",
+        return sf_console_fail(SF_ERROR_USAGE,
+                               "--methods %s: it has no layers of the smoke alone to be compared; leave it out",
                                work->verify->entries[entry].method);
     *layers = (struct sf_layers){.width = frame->width,
                                  .height = frame->height,
@@ -109,6 +113,7 @@ static enum sf_status draw_entry(struct work *work, size_t entry, struct sf_rend
     struct sf_verify_row *row = &work->result->rows[entry];
     struct sf_frame frame;
     uint64_t ticket;
+    bool thorough;
     enum sf_status status = sf_renderer_render(renderer, work->result->frame, &ticket);
 
     if (!status)
@@ -118,11 +123,12 @@ static enum sf_status draw_entry(struct work *work, size_t entry, struct sf_rend
     sf_verify_check_particles(&frame, &row->fault);
     if (row->fault.found)
         return SF_OK;
+    thorough = work->verify->entries[entry].sweep == 0 && frame.live <= LIVE_THOROUGH;
     status = take_frame(work, entry, &frame);
     if (!status)
         status = open_reference(work, entry, &frame);
     if (!status)
-        status = sf_verify_trace(renderer, &options, &frame, work->verify->entries[entry].sweep == 0, &row->fault);
+        status = sf_verify_trace(renderer, &options, &frame, thorough, &row->fault);
     return status;
 }
 

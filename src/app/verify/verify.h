@@ -80,6 +80,8 @@ enum sf_status sf_verify_find_entries(struct sf_verify *verify);
 /* The scene as the entry draws it. */
 enum sf_status sf_verify_load(const struct sf_verify *verify, const char *path, const struct sf_verify_entry *entry,
                               struct sf_scene **scene);
+/* ---- cost.c ---- */
+
 /* How many spheres a ray through the smoke meets, on average over all directions. */
 double sf_verify_crossed(const struct sf_frame *frame);
 /* How far apart the reference's pixels must be for it to take bounded time, going by a sparse sample of them: 1 for all
