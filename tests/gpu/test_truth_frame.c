@@ -206,13 +206,17 @@ static void test_reference_picture(void **state)
                                                   : pixel->near < pixel->far && pixel->radiance[0] > 0);
         }
     }
-    /* One pixel of each 4 x 4 is the same pixel. */
-    assert_int_equal(sf_reference_render(reference, NULL, WIDTH, HEIGHT, 4, NULL, NULL, &again), SF_OK);
+    /* One pixel of each 4 x 4 is the same pixel; the last column's stands for a block that the picture cuts off. */
+    const struct sf_camera_view close = {{0, 0, 2}, {0, 0, 0}, {0, 1, 0}, 40, 0.01f};
+    sf_reference_picture_destroy(&picture);
+    assert_int_equal(sf_reference_render(reference, &close, WIDTH, HEIGHT, 0, NULL, NULL, &picture), SF_OK);
+    assert_int_equal(sf_reference_render(reference, &close, WIDTH, HEIGHT, 4, NULL, NULL, &again), SF_OK);
     assert_int_equal(again->width, 11);
     assert_int_equal(again->height, 8);
+    assert_true(again->pixels[4 * 11 + 10].transmittance < 1);
     for (uint32_t y = 0; y < 8; y++)
         for (uint32_t x = 0; x < 11; x++) {
-            uint32_t from = (y < 7 ? 4 * y + 2 : 30) * WIDTH + (x < 10 ? 4 * x + 2 : 40);
+            uint32_t from = (4 * y + 2) * WIDTH + (x < 10 ? 4 * x + 2 : 40);
             assert_memory_equal(&again->pixels[y * 11 + x], &picture->pixels[from], sizeof *picture->pixels);
         }
     sf_reference_picture_destroy(&again);
