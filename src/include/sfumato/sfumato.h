@@ -332,7 +332,7 @@ struct sf_reference_estimate {
     float *error;    /* [height][width][3] standard errors; INFINITY with fewer than two paths */
 };
 /* Adds `paths` to every pixel. *estimate NULL begins one; else all arguments are those that it began with. The same
- * paths in the same order give the same bits. On failure *estimate is destroyed and NULL. */
+ * paths in the same order give the same bits. The reference must outlive it. On failure *estimate is destroyed and NULL. */
 enum sf_status sf_reference_scatter(const struct sf_reference *reference, const struct sf_camera_view *view,
                                     uint32_t width, uint32_t height, uint32_t orders, uint32_t paths,
                                     sf_progress_fn progress, void *user, struct sf_reference_estimate **estimate);
