@@ -69,13 +69,15 @@ struct sf_gpu_object {
     SF_VEC4(bounce);  /* x restitution, y friction, z, w unused */
 };
 
-/* Where a light sees the smoke from: fitted on the GPU to the particles' bounds each frame (light/fit.comp). A point p
+/* Where a light sees the smoke from: fitted on the GPU to the particles' bounds each frame (thick/fit.comp). A point p
  * of the world has q = (view * p).xyz (x right, y up, z away from the light), uv = (perspective ? q.xy / q.z : q.xy) *
- * window.xy + window.zw in 0..1 of its cell (v down), and depth d = perspective ? length(q) : q.z. */
+ * window.xy + window.zw in 0..1 of its cell (v down), and depth d = perspective ? length(q) : q.z. A light that stands in
+ * the smoke, or close to it, looks all around: window.x is 0, and uv is the octahedral map of q. */
 struct sf_gpu_light_view {
     SF_MAT4(view);
     SF_VEC4(window);
-    SF_VEC4(info); /* x: 1 perspective; y: 1 valid (there is smoke, the light is on); z: m per texel at the smoke's
+    SF_VEC4(
+        info); /* x: 1 perspective, 2 all around; y: 1 valid (there is smoke, the light is on); z: m per texel at the smoke's
                       centre; w: unused */
 };
 #endif

@@ -13,7 +13,8 @@ layout(set = 0, binding = 2, std430) writeonly buffer Views { sf_gpu_light_view 
 layout(set = 0, binding = 3, std430) writeonly buffer Args { sf_thick_args args; };
 layout(push_constant) uniform Push { sf_thick_push push; };
 
-const float TAN_MAX = 3.73; // tan 75 deg: a point light close to the smoke looks at its middle
+layout(constant_id = 0) const uint AROUND = 0u; // 1: a light close to the smoke, or in it, looks all around; 0: it looks at its middle
+const float TAN_MAX = AROUND != 0u ? 1.73 : 3.73; // 60 deg, 75 deg
 
 // Rounded up to one of 8 sizes an octave, so that the map's texels keep their size while smoke grows a little.
 float snapped(float extent)
@@ -47,13 +48,16 @@ void main()
     float texels = float(push.cell_size);
     float usable = (texels - 2.0 * push.light_margin) / texels;
     vec2 window;
-    float texel;
+    float kind = 0.0, texel;
     if (perspective) {
         float radius = length(reach);
         float tangent = distance > radius * 1.04 ? radius / sqrt(distance * distance - radius * radius) : TAN_MAX;
-        tangent = min(snapped(tangent / usable), TAN_MAX);
-        window = vec2(0.5 / tangent);
-        texel = 2.0 * tangent * distance / texels;
+        tangent = snapped(tangent / usable);
+        bool around = AROUND != 0u && tangent > TAN_MAX;
+        tangent = min(tangent, TAN_MAX);
+        window = vec2(around ? 0.0 : 0.5 / tangent);
+        kind = around ? 2.0 : 1.0;
+        texel = (around ? 3.54 : 2.0 * tangent) * distance / texels; // sqrt(4 pi)
     } else {
         vec2 extent = vec2(dot(abs(side), reach), dot(abs(up), reach));
         extent = vec2(snapped(extent.x / usable), snapped(extent.y / usable));
@@ -67,6 +71,6 @@ void main()
     }
     views[light].view = mat4(vec4(side.x, up.x, forward.x, 0.0), vec4(side.y, up.y, forward.y, 0.0), vec4(side.z, up.z, forward.z, 0.0),
                              vec4(-dot(side, origin), -dot(up, origin), -dot(forward, origin), 1.0));
-    views[light].window = vec4(window.x, -window.y, 0.5, 0.5);
-    views[light].info = vec4(perspective ? 1.0 : 0.0, smoke && any(greaterThan(source.color.rgb, vec3(0.0))) ? 1.0 : 0.0, texel, 0.0);
+    views[light].window = kind > 1.5 ? vec4(0.0) : vec4(window.x, -window.y, 0.5, 0.5);
+    views[light].info = vec4(kind, smoke && any(greaterThan(source.color.rgb, vec3(0.0))) ? 1.0 : 0.0, texel, 0.0);
 }

@@ -9,11 +9,13 @@ layout(constant_id = 3) const uint CHOICE = 0u; // as in tile.vert
 layout(set = 0, binding = 2) uniform sampler2D smoke;
 layout(set = 0, binding = 3) uniform sampler2D smoke_depth;
 layout(set = 0, binding = 4) uniform sampler2D scene_depth;
+layout(set = 0, binding = 5) uniform sampler2D whole;
 layout(location = 0) flat in vec4 behind;
 layout(location = 0) out vec4 result;
 #include "thick/upsample.glsl"
+#include "thick/full.glsl"
 
 void main()
 {
-    result = upsample(smoke, gl_FragCoord.xy);
+    result = full_smoke();
 }

@@ -2,7 +2,7 @@
 #include <stddef.h>
 
 #include "base/hash.h"
-#include "methods/thick.h"
+#include "methods/thick_parts.h"
 
 enum {
     OCTAVES = 4,

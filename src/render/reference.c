@@ -33,6 +33,7 @@ static const char *foreign_medium(int32_t method)
     switch ((enum sf_method)method) {
     case SF_METHOD_NONE:
     case SF_METHOD_THICK:
+    case SF_METHOD_LARSSON:
         return NULL;
     }
     return "a medium of its own";
@@ -70,18 +71,25 @@ static void note_thick(struct sf_reference *reference, const struct sf_thick_set
                                             "thick.octaves is %d: it adds light that is scattered more than once; the "
                                             "reference has one scattering",
                                             thick->octaves));
-    if (thick->soft > 0)
-        add_note(reference, sf_arena_printf(arena,
-                                            "thick.soft is %g: it fades smoke towards surfaces; the reference cuts "
-                                            "it off there",
-                                            (double)thick->soft));
-    if (thick->life_fade > 0)
-        add_note(reference, sf_arena_printf(arena,
-                                            "thick.life_fade is %g: it thins smoke with age; the reference takes "
-                                            "particles as the simulation leaves them",
-                                            (double)thick->life_fade));
     if (!thick->scene_shadow)
         add_note(reference, "thick.scene_shadow is false: in the reference objects shadow the smoke");
+}
+
+/* The same of thick-larsson alone. */
+static void note_larsson(struct sf_reference *reference, const struct sf_larsson_settings *larsson)
+{
+    struct sf_arena *arena = &reference->arena;
+
+    if (larsson->soft > 0)
+        add_note(reference, sf_arena_printf(arena,
+                                            "larsson.soft is %g: it fades smoke towards surfaces; the reference cuts "
+                                            "it off there",
+                                            (double)larsson->soft));
+    if (larsson->life_fade > 0)
+        add_note(reference, sf_arena_printf(arena,
+                                            "larsson.life_fade is %g: it thins smoke with age; the reference takes "
+                                            "particles as the simulation leaves them",
+                                            (double)larsson->life_fade));
 }
 
 /* ---- making one ---- */
@@ -173,8 +181,10 @@ enum sf_status sf_reference_create(const struct sf_scene *scene, const struct sf
         status = sf_fail(log, SF_ERROR_USAGE, "reference: the frame's view is none");
     if (!status)
         status = create_truth(reference, frame, options);
-    if (!status && scene->method == SF_METHOD_THICK)
+    if (!status && (scene->method == SF_METHOD_THICK || scene->method == SF_METHOD_LARSSON))
         note_thick(reference, &scene->thick);
+    if (!status && scene->method == SF_METHOD_LARSSON)
+        note_larsson(reference, &scene->larsson);
     if (status)
         sf_reference_destroy(&reference);
     *out = reference;

@@ -199,8 +199,9 @@ struct sf_ramp_key {
 
 /* ---- settings: the groups of the parameter table that are not lists ---- */
 
-enum sf_method { SF_METHOD_NONE, SF_METHOD_THICK };
+enum sf_method { SF_METHOD_NONE, SF_METHOD_THICK, SF_METHOD_LARSSON };
 enum sf_resolution { SF_RESOLUTION_FULL, SF_RESOLUTION_HALF, SF_RESOLUTION_QUARTER };
+enum sf_thick_placement { SF_PLACEMENT_EQUAL, SF_PLACEMENT_UNIFORM, SF_PLACEMENT_JITTERED };
 enum sf_tone { SF_TONE_LINEAR, SF_TONE_REINHARD, SF_TONE_ACES, SF_TONE_NEUTRAL };
 
 struct sf_sim_settings {
@@ -219,23 +220,30 @@ struct sf_shadow_settings {
     float softness;   /* px: sigma of its blur */
     float exponent;   /* of the map */
 };
+/* Of thick and of thick-larsson, but for placement and light_slices, which are of thick alone. */
 struct sf_thick_settings {
-    int32_t resolution; /* of the smoke's passes, against the frame */
-    int32_t steps;      /* samples along the camera ray */
+    int32_t resolution;   /* of the smoke's passes, against the frame */
+    int32_t steps;        /* samples along the camera ray */
+    int32_t placement;    /* enum sf_thick_placement */
+    int32_t octaves;      /* of multiple scattering, 1..4; 1 is single scattering, what the reference computes */
+    int32_t light_size;   /* px: light-view map, per light */
+    int32_t light_slices; /* depths of each of its texels */
+    float light_blur;     /* px: sigma in the light map */
+    float detail;         /* 0..1 strength of the atlas in density */
+    float detail_scale;   /* tiles across a particle's diameter */
+    float ambient;        /* times the environment's */
+    bool scene_shadow;    /* scene objects shadow the smoke */
+    bool ground_shadow;   /* smoke shadows the scene */
+};
+
+/* Of thick-larsson alone. */
+struct sf_larsson_settings {
     float blur;         /* px of the full frame: sigma of the camera-view blur */
-    int32_t octaves;    /* of multiple scattering, 1..4; 1 is single scattering, what the reference computes */
-    int32_t light_size; /* px: light-view map, per light */
-    float light_blur;   /* px: sigma in the light map */
-    float detail;       /* 0..1 strength of the atlas in density */
-    float detail_scale; /* tiles across a particle's diameter */
     float density_blur; /* 0: exact optical depth; 1: blurred as the thesis does */
-    float ambient;      /* times the environment's */
     float thin; /* optical depth across a particle below which its surfaces recede from the min/max views; 0: never, as
                    in the thesis */
     float soft; /* m: extra fade towards the scene's surface (thesis pass 10); 0: none, the clipped chord does it */
-    float life_fade;    /* exponent of the thesis' alpha-from-life; 0: none */
-    bool scene_shadow;  /* scene objects shadow the smoke */
-    bool ground_shadow; /* smoke shadows the scene */
+    float life_fade; /* exponent of the thesis' alpha-from-life; 0: none */
 };
 
 struct sf_scene {
@@ -261,6 +269,7 @@ struct sf_scene {
     struct sf_output_settings output;
     struct sf_shadow_settings shadow;
     struct sf_thick_settings thick;
+    struct sf_larsson_settings larsson;
     /* The values as they were given, before directions are normalised, emitters take the medium's extinction, and files
      * are read: what controls show. NULL in a scene that was not loaded. */
     const struct sf_scene *stated;

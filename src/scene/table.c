@@ -97,6 +97,7 @@ static const struct sf_param shadow_rows[] = {
 static const struct sf_param_group shadow_group =
     GROUP("shadow", struct sf_shadow_settings, shadow_rows, "Shadows of the scene's objects.");
 
+static const char *const placements[] = {"equal", "uniform", "jittered", NULL};
 static const char *const resolutions[] = {"full", "half", "quarter", NULL};
 static const struct sf_param thick_rows[] = {
     {ROW_ENUM("resolution", struct sf_thick_settings, resolution, resolutions, SF_RESOLUTION_HALF,
@@ -105,14 +106,18 @@ static const struct sf_param thick_rows[] = {
     {ROW_INT("steps", struct sf_thick_settings, steps, 8, 1, 256, "",
              "samples along the camera's ray through the smoke"),
      .rebuild = SF_REBUILD_GRAPH},
-    {ROW_FLOAT("blur", struct sf_thick_settings, blur, 4, 0, 38, "px",
-               "sigma of the camera view's blur, in pixels of the frame"),
+    {ROW_ENUM(
+         "placement", struct sf_thick_settings, placement, placements, SF_PLACEMENT_EQUAL,
+         "of the samples: equal shares of the light seen, equal lengths, or shares with a random shift (thick only)"),
      .rebuild = SF_REBUILD_GRAPH},
     {ROW_INT("octaves", struct sf_thick_settings, octaves, 1, 1, 4, "",
              "of multiple scattering; 1: single scattering, as the reference computes it"),
      .rebuild = SF_REBUILD_GRAPH},
     {ROW_INT("light_size", struct sf_thick_settings, light_size, 192, 16, 4096, "px",
              "side of the light's view of the smoke, per light"),
+     .rebuild = SF_REBUILD_GRAPH},
+    {ROW_INT("light_slices", struct sf_thick_settings, light_slices, 16, 1, 64, "",
+             "depths in each texel of it, rounded up to a multiple of 16 (thick only)"),
      .rebuild = SF_REBUILD_GRAPH},
     {ROW_FLOAT("light_blur", struct sf_thick_settings, light_blur, 1.5, 0, 9.5, "px",
                "sigma of the light view's blur, in its own pixels"),
@@ -122,29 +127,39 @@ static const struct sf_param thick_rows[] = {
      .rebuild = SF_REBUILD_GRAPH},
     {ROW_FLOAT("detail_scale", struct sf_thick_settings, detail_scale, 1, 0.05, 64, "",
                "tiles of the atlas across a particle")},
-    {ROW_FLOAT("density_blur", struct sf_thick_settings, density_blur, 0, 0, 1, "",
-               "0: exact optical depth; 1: the blurred one of the thesis; between: a mix")},
     {ROW_FLOAT("ambient", struct sf_thick_settings, ambient, 1, 0, 100, "",
                "multiplies the environment's light in the smoke")},
-    {ROW_FLOAT("thin", struct sf_thick_settings, thin, 1, 0, 100, "",
-               "optical depth across a particle below which its surfaces recede from the depth views; 0: never")},
-    {ROW_FLOAT("soft", struct sf_thick_settings, soft, 0, 0, 100, "m",
-               "extra fade of the smoke towards surfaces; 0: none, the smoke is cut there exactly"),
-     .rebuild = SF_REBUILD_GRAPH},
-    {ROW_FLOAT("life_fade", struct sf_thick_settings, life_fade, 0, 0, 16, "",
-               "exponent of the thesis' fade with life; 0: none, emitters fade by themselves")},
     {ROW_BOOL("scene_shadow", struct sf_thick_settings, scene_shadow, 1, "objects cast shadows on the smoke"),
      .rebuild = SF_REBUILD_GRAPH},
     {ROW_BOOL("ground_shadow", struct sf_thick_settings, ground_shadow, 1, "the smoke casts shadows on objects"),
      .rebuild = SF_REBUILD_GRAPH},
 };
 static const struct sf_param_group thick_group =
-    GROUP("thick", struct sf_thick_settings, thick_rows, "The method thick: thick smoke with volumetric lighting.");
+    GROUP("thick", struct sf_thick_settings, thick_rows,
+          "The methods thick and thick-larsson: thick smoke with volumetric lighting.");
+
+static const struct sf_param larsson_rows[] = {
+    {ROW_FLOAT("blur", struct sf_larsson_settings, blur, 4, 0, 38, "px",
+               "sigma of the camera view's blur, in pixels of the frame"),
+     .rebuild = SF_REBUILD_GRAPH},
+    {ROW_FLOAT("density_blur", struct sf_larsson_settings, density_blur, 0, 0, 1, "",
+               "0: exact optical depth; 1: the blurred one of the thesis; between: a mix")},
+    {ROW_FLOAT("thin", struct sf_larsson_settings, thin, 1, 0, 100, "",
+               "optical depth across a particle below which its surfaces recede from the depth views; 0: never")},
+    {ROW_FLOAT("soft", struct sf_larsson_settings, soft, 0, 0, 100, "m",
+               "extra fade of the smoke towards surfaces; 0: none, the smoke is cut there exactly"),
+     .rebuild = SF_REBUILD_GRAPH},
+    {ROW_FLOAT("life_fade", struct sf_larsson_settings, life_fade, 0, 0, 16, "",
+               "exponent of the thesis' fade with life; 0: none, emitters fade by themselves")},
+};
+static const struct sf_param_group larsson_group =
+    GROUP("larsson", struct sf_larsson_settings, larsson_rows,
+          "The method thick-larsson alone: the thesis's way, one interval a ray.");
 
 #define ROW_OBJECT(k, f, of, text)                                                                                     \
     .key = k, .type = SF_PARAM_OBJECT, .offset = offsetof(struct sf_scene, f), .group = &of, .unit = "", .doc = text
 
-static const char *const methods[] = {"none", "thick", NULL};
+static const char *const methods[] = {"none", "thick", "thick-larsson", NULL};
 static const struct sf_param scene_rows[] = {
     {ROW_OBJECT("camera", camera, sf_scene_camera_group, "the eye")},
     {ROW_LIST("lights", struct sf_scene, lights, light_count, sf_scene_light_group, 0, SF_LIGHTS_MAX, "lamps")},
@@ -164,7 +179,8 @@ static const struct sf_param scene_rows[] = {
     {ROW_OBJECT("sim", sim, sim_group, "the simulation")},
     {ROW_OBJECT("output", output, output_group, "pictures for the eye")},
     {ROW_OBJECT("shadow", shadow, shadow_group, "shadows of objects")},
-    {ROW_OBJECT("thick", thick, thick_group, "the method thick")},
+    {ROW_OBJECT("thick", thick, thick_group, "the methods thick and thick-larsson")},
+    {ROW_OBJECT("larsson", larsson, larsson_group, "the method thick-larsson")},
 };
 const struct sf_param_group sf_scene_group =
     GROUP("scene", struct sf_scene, scene_rows, "The outermost object of a scene file.");

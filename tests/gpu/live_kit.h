@@ -216,8 +216,8 @@ static const char live_sky[] =
     "\"environment\":{\"type\":\"sky\"},"
     "\"sim\":{\"capacity\":256,\"fps\":24,\"substeps\":2,\"preroll\":0.25},"
     "\"shadow\":{\"map_size\":64,\"softness\":1.2},"
-    "\"thick\":{\"steps\":5,\"light_size\":48,\"blur\":2,\"soft\":0.05,\"density_blur\":0.4,\"life_fade\":0.3,"
-    "\"octaves\":2}}";
+    "\"thick\":{\"steps\":5,\"light_size\":48,"
+    "\"octaves\":2},\"larsson\":{\"blur\":2,\"soft\":0.05,\"density_blur\":0.4,\"life_fade\":0.3}}";
 
 static const char live_lists[] =
     "{\"camera\":{\"type\":\"keyframes\",\"keys\":[{\"time\":0,\"eye\":[1.5,1.2,3],\"target\":[0,0.7,0]},"
@@ -237,6 +237,6 @@ static const char live_lists[] =
     "{\"type\":\"vortex\",\"strength\":0.5,\"position\":[0,0,0.1]}],"
     "\"environment\":{\"type\":\"latlong\",\"file\":\"../assets/dusk.hdr\",\"rotation\":20},"
     "\"sim\":{\"capacity\":200,\"fps\":24,\"substeps\":1},\"shadow\":{\"map_size\":64},"
-    "\"thick\":{\"steps\":4,\"light_size\":48,\"resolution\":\"full\",\"blur\":1,\"detail\":0}}";
+    "\"thick\":{\"steps\":4,\"light_size\":48,\"resolution\":\"full\",\"detail\":0},\"larsson\":{\"blur\":1}}";
 
 #endif

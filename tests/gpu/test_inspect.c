@@ -26,7 +26,7 @@ static void write_log(void *user, enum sf_log_level level, const char *message)
 static const struct sf_log test_log = {.write = write_log, .level = SF_LOG_WARNING};
 
 static const char smoky[] =
-    "{\"camera\":{\"eye\":[2,1.5,3],\"target\":[0,0.8,0]},"
+    "{\"method\":\"thick-larsson\",\"camera\":{\"eye\":[2,1.5,3],\"target\":[0,0.8,0]},"
     "\"lights\":[{\"type\":\"directional\",\"direction\":[-1,-1,0]}],"
     "\"objects\":[{\"type\":\"plane\"},{\"type\":\"sphere\",\"position\":[0.6,0.3,0],\"radius\":0.3}],"
     "\"emitters\":[{\"type\":\"cone\",\"position\":[0,0.1,0],\"rate\":120,\"lifetime\":[0.6,1],\"speed\":[1,1.5],"

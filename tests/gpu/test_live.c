@@ -20,7 +20,7 @@ static void test_options(void **state)
         {.width = 1, .height = 1},
         {.width = 37, .height = 53, .aovs = SF_AOV_SMOKE | SF_AOV_DEPTHS},
         {.width = 130, .height = 90, .float_color = true, .timing = true, .frames_kept = 8},
-        {.width = 37, .height = 53, .inspect = "camera.raw"},
+        {.width = 37, .height = 53, .inspect = "light.raw"},
         {.width = 64, .height = 64, .shown = true, .returned = true, .aovs = SF_AOV_DEPTHS},
         {.width = 3, .height = 200, .timing = true, .frames_kept = 1},
     };
@@ -222,14 +222,14 @@ static void test_failures(void **state)
     } scenes[] = {
         {"sim.capacity=1000000", SF_ERROR_SCENE, "/sim/capacity"},
         {"shadow.map_size=8192", SF_ERROR_MEMORY, "'shadow.map' needs"},
-        {"thick.light_size=4096", SF_ERROR_MEMORY, "budget"},
-        {"method=none", SF_ERROR_USAGE, "no image or buffer 'camera.raw'"},
+        {"thick.light_size=1024", SF_ERROR_MEMORY, "budget"},
+        {"method=none", SF_ERROR_USAGE, "no image or buffer 'light.raw'"},
     };
     static const struct sf_renderer_options bad[] = {{.width = 0, .height = 5},
                                                      {.width = 4000, .height = 4000},
                                                      {.width = 9, .height = 9, .inspect = "nothing"},
                                                      {.width = 9, .height = 9, .frames_kept = 9}};
-    const struct sf_renderer_options options = {.width = SIDE, .height = SIDE, .inspect = "camera.raw"};
+    const struct sf_renderer_options options = {.width = SIDE, .height = SIDE, .inspect = "light.raw"};
     const struct sf_device_options limited = {.validate = true, .no_cache = true, .budget_bytes = 96 << 20};
     struct sf_device *usual = live_device;
     struct sf_scene *scene = live_parse(live_sky, "lights.1.type=spot");
@@ -442,9 +442,9 @@ static void test_words(void **state)
     frame = live_frame(renderer, 5);
     assert_int_equal(frame.inspected_word_count, sizeof(struct sf_gpu_frame) / 4);
     assert_int_equal(frame.inspected_words[offsetof(struct sf_gpu_frame, frame_number) / 4], 5);
-    options.inspect = "camera.rau";
+    options.inspect = "light.rau";
     assert_int_equal(sf_renderer_set_options(renderer, &options), SF_ERROR_USAGE);
-    assert_non_null(strstr(live_message, "did you mean 'camera.raw'"));
+    assert_non_null(strstr(live_message, "did you mean 'light.raw'"));
     assert_non_null(strstr(live_message, "counts, "));
     assert_null(strstr(live_message, "read."));
     sf_renderer_destroy(&renderer);

@@ -41,7 +41,7 @@ static void with_frame(const char *json, uint32_t width, uint32_t height, void (
 }
 
 #define SPHERES(camera, list)                                                                                          \
-    "{\"method\":\"thick\",\"thick\":{\"resolution\":\"full\",\"detail\":0,\"density_blur\":0,\"steps\":8},"           \
+    "{\"method\":\"thick\",\"thick\":{\"resolution\":\"full\",\"detail\":0,\"steps\":8},"                              \
     "\"camera\":{" camera "},\"medium\":{\"albedo\":[1,1,1],\"g\":0},"                                                 \
     "\"lights\":[{\"type\":\"directional\",\"direction\":[-1,-1,0],\"intensity\":3}],"                                 \
     "\"emitters\":[{\"type\":\"list\",\"still\":true,\"particles\":[" list "]}]}"
@@ -149,7 +149,7 @@ static void check_thin(const struct sf_frame *frame)
 }
 
 #define THIN(g, direction)                                                                                             \
-    "{\"method\":\"thick\",\"thick\":{\"resolution\":\"full\",\"detail\":0,\"density_blur\":0,\"octaves\":1,"          \
+    "{\"method\":\"thick\",\"thick\":{\"resolution\":\"full\",\"detail\":0,\"octaves\":1,"                             \
     "\"ambient\":0},"                                                                                                  \
     "\"camera\":{\"eye\":[0,0,4],\"target\":[0,0,0],\"fov\":40,\"near\":0.01},\"medium\":{\"albedo\":[1,1,1],\"g\":" g \
     "},"                                                                                                               \

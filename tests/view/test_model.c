@@ -44,7 +44,7 @@ static const char plain[] = "{\n"
                             "    { \"type\": \"directional\", \"direction\": [1, -1, 0], \"intensity\": 4.2 }\n"
                             "  ],\n"
                             "  \"emitters\": [{ \"type\": \"cone\", \"rate\": 80 }],\n"
-                            "  \"thick\": { \"steps\": 12, \"blur\": 5 }\n"
+                            "  \"thick\": { \"steps\": 12 }, \"larsson\": { \"blur\": 5 }\n"
                             "}\n";
 
 /* Times of files are as fine as the kernel's tick, so that two writes within one may look like one. */
@@ -121,7 +121,7 @@ static void test_open(void **state)
     /* The intensity is the file's, the detail the table's default: neither is a change. */
     assert_sets(&model, "thick.steps=30 ");
     assert_true(value_of(&model, "thick.steps") == 30);
-    assert_true(value_of(&model, "thick.blur") == 5);
+    assert_true(value_of(&model, "larsson.blur") == 5);
     assert_string_equal(model.path, "plain.json");
     assert_string_equal(model.info.path, "plain.json");
     assert_int_equal(model.info.lights, 2);
@@ -181,13 +181,13 @@ static void test_set(void **state)
     assert_true(value_of(&model, "thick.steps") == 12);
     assert_silence();
 
-    assert_int_equal(sf_model_set(&model, "thick.blur=6"), SF_OK);
+    assert_int_equal(sf_model_set(&model, "larsson.blur=6"), SF_OK);
     before = model.scene;
     assert_int_equal(sf_model_set(&model, "thick.steps=1000"), SF_ERROR_USAGE);
     assert_error("thick.steps=1000");
     assert_int_equal(sf_model_set(&model, "thick.steps"), SF_ERROR_USAGE);
     assert_error("KEY=VALUE");
-    assert_sets(&model, "thick.blur=6 ");
+    assert_sets(&model, "larsson.blur=6 ");
     assert_ptr_equal(model.scene, before);
     sf_model_finish(&model);
 }
@@ -210,15 +210,15 @@ static void test_reset(void **state)
     struct sf_model model = opened((const char *const[]){"thick.steps=24"}, 1);
 
     (void)state;
-    assert_int_equal(sf_model_set(&model, "thick.blur=6"), SF_OK);
+    assert_int_equal(sf_model_set(&model, "larsson.blur=6"), SF_OK);
     assert_int_equal(sf_model_set(&model, "camera.fov=50"), SF_OK);
-    assert_int_equal(sf_model_reset(&model, "thick.soft"), SF_OK);
+    assert_int_equal(sf_model_reset(&model, "larsson.soft"), SF_OK);
     assert_int_equal(sf_model_reset(&model, "thick.steps"), SF_OK);
-    assert_sets(&model, "thick.blur=6 camera.fov=50 ");
+    assert_sets(&model, "larsson.blur=6 camera.fov=50 ");
     assert_true(value_of(&model, "thick.steps") == 12);
     assert_int_equal(sf_model_reset(&model, NULL), SF_OK);
     assert_sets(&model, "");
-    assert_true(value_of(&model, "thick.blur") == 5);
+    assert_true(value_of(&model, "larsson.blur") == 5);
     assert_int_equal(sf_model_reset(&model, NULL), SF_OK);
     assert_silence();
     sf_model_finish(&model);
@@ -228,7 +228,7 @@ static void test_many(void **state)
 {
     struct sf_model model = opened(NULL, 0);
     const char *const good[] = {"thick.steps=3", "camera.fov=60", "thick.steps=4"};
-    const char *const bad[] = {"thick.blur=7", "camera.fov=600"};
+    const char *const bad[] = {"larsson.blur=7", "camera.fov=600"};
 
     (void)state;
     assert_int_equal(sf_model_set_many(&model, good, 3), SF_OK);
@@ -236,7 +236,7 @@ static void test_many(void **state)
     assert_int_equal(sf_model_set_many(&model, bad, 2), SF_ERROR_USAGE);
     assert_error("camera.fov=600");
     assert_sets(&model, "thick.steps=4 camera.fov=60 ");
-    assert_true(value_of(&model, "thick.blur") == 5);
+    assert_true(value_of(&model, "larsson.blur") == 5);
     sf_model_finish(&model);
 }
 
@@ -340,9 +340,9 @@ static void test_replace(void **state)
     assert_int_equal(model.info.lights, 0);
     /* Compared with the new file from now on. */
     assert_int_equal(sf_model_set(&model, "thick.steps=12"), SF_OK);
-    assert_int_equal(sf_model_set(&model, "thick.blur=5"), SF_OK);
+    assert_int_equal(sf_model_set(&model, "larsson.blur=5"), SF_OK);
     assert_int_equal(sf_model_set(&model, "thick.steps=24"), SF_OK);
-    assert_sets(&model, "thick.blur=5 ");
+    assert_sets(&model, "larsson.blur=5 ");
     assert_silence();
     sf_model_finish(&model);
 }

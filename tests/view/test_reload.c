@@ -206,7 +206,7 @@ static void test_change(void **state)
 
 static void test_broken(void **state)
 {
-    static const char good[] = "result = upsample(", bad[] = "result = upsampel(";
+    static const char good[] = "result = full_smoke(", bad[] = "result = full_smkoe(";
     char expected[256];
     struct sf_reload *reload = created();
     int line;
@@ -214,8 +214,8 @@ static void test_broken(void **state)
     (void)state;
     line = edit("glsl/thick/over.frag", good, bad);
     assert_false(watched(reload));
-    snprintf(expected, sizeof expected, "glsl/thick/over.frag:%d: 'upsampel': no matching overloaded function found\n",
-             line);
+    snprintf(expected, sizeof expected,
+             "glsl/thick/over.frag:%d: 'full_smkoe': no matching overloaded function found\n", line);
     assert_errors(reload, expected);
     assert_true(is_as_first());
     edit("glsl/thick/over.frag", bad, good);

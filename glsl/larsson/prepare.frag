@@ -1,0 +1,25 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// Empties the smoke's targets where they will be used, and takes the scene's depth down. Depths behind all smoke are made equal.
+#include "shared/frame.h"
+#include "shared/thick.h"
+
+layout(set = 0, binding = 2) uniform sampler2D scene_depth;
+layout(set = 0, binding = 8, std430) writeonly buffer Mask { uint mask[]; };
+layout(push_constant) uniform Push { sf_thick_push push; };
+layout(location = 0) flat in vec4 behind;
+layout(location = 1) flat in uint number;
+layout(location = 0) out vec4 raw;
+layout(location = 1) out vec4 smoke;
+layout(location = 2) out float depth;
+#include "thick/reduce.glsl"
+
+void main()
+{
+    vec2 reduced = reduced_depth(ivec2(gl_FragCoord.xy));
+    if (reduced.y < behind.x)
+        mask[number] = SF_THICK_TILE_CUT;
+    raw = vec4(SF_DEPTH_FAR, SF_DEPTH_FAR, 1.0, 0.0);
+    smoke = vec4(0.0);
+    depth = min(reduced.x, behind.x);
+}

@@ -1,0 +1,206 @@
+/* What the two methods of thick smoke share. */
+#include "methods/thick_parts.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include "shared/frame.h"
+#include "shared/particle.h"
+
+_Static_assert(sizeof(struct sf_thick_push) <= SF_PUSH_BYTES_MAX, "push constants");
+_Static_assert(sizeof(struct sf_thick_blur_push) <= SF_PUSH_BYTES_MAX, "push constants");
+_Static_assert(offsetof(struct sf_particle_counts, draw) == SF_COUNTS_DRAW_OFFSET, "shared layout");
+_Static_assert(offsetof(struct sf_particle_counts, dispatch) == SF_COUNTS_DISPATCH_OFFSET, "shared layout");
+_Static_assert(offsetof(struct sf_thick_args, draw_tiles) == SF_THICK_DRAW_TILES_OFFSET, "shared layout");
+_Static_assert(offsetof(struct sf_thick_args, dispatch_tiles) == SF_THICK_DISPATCH_TILES_OFFSET, "shared layout");
+
+uint32_t sf_thick_scale(const struct sf_scene *scene)
+{
+    return 1u << scene->thick.resolution;
+}
+
+uint32_t sf_thick_blur_radius(float sigma)
+{
+    uint32_t radius = (uint32_t)ceilf(2.5f * sigma);
+    return radius < SF_THICK_BLUR_MAX ? radius : SF_THICK_BLUR_MAX;
+}
+
+void sf_thick_blur_weights(float sigma, float weight[SF_THICK_BLUR_MAX + 1])
+{
+    uint32_t radius = sf_thick_blur_radius(sigma);
+    double sum = 0;
+    for (uint32_t i = 0; i <= SF_THICK_BLUR_MAX; i++) {
+        double x = sigma > 0 ? i / (double)sigma : 0;
+        weight[i] = i > radius ? 0.0f : (float)exp(-0.5 * x * x);
+        sum += (i == 0 ? 1 : 2) * (double)weight[i];
+    }
+    for (uint32_t i = 0; i <= radius; i++)
+        weight[i] = (float)(weight[i] / sum);
+}
+
+void sf_thick_fill(const struct sf_method_frame *frame, struct sf_thick *thick)
+{
+    const struct sf_thick_settings *settings = &frame->scene->thick;
+    uint32_t scale = sf_thick_scale(frame->scene);
+    uint32_t width = sf_divide_up(frame->width, scale), height = sf_divide_up(frame->height, scale);
+    uint32_t cells = frame->scene->light_count > 0 ? frame->scene->light_count : 1;
+    thick->push = (struct sf_thick_push){
+        .width = width,
+        .height = height,
+        .scale = scale,
+        .tiles_x = sf_divide_up(width, SF_THICK_TILE),
+        .tiles_y = sf_divide_up(height, SF_THICK_TILE),
+        .cells = cells,
+        .cell_size = (uint32_t)settings->light_size,
+        .detail = settings->detail,
+        .detail_scale = settings->detail_scale,
+        .ambient = settings->ambient,
+        .light_margin = (float)sf_thick_blur_radius(settings->light_blur) + 1.0f,
+        .capacity = (uint32_t)frame->scene->sim.capacity,
+    };
+    thick->light_blur = (struct sf_thick_blur_push){
+        .width = cells * thick->push.cell_size, .height = thick->push.cell_size, .cell = thick->push.cell_size};
+    sf_thick_blur_weights(settings->light_blur, thick->light_blur.weight);
+}
+
+void sf_thick_pass(struct sf_method_frame *frame, const struct sf_thick *thick, const struct sf_use *uses,
+                   uint32_t use_count, struct sf_pass_desc desc)
+{
+    desc.uses = uses;
+    desc.use_count = use_count;
+    desc.push = &thick->push;
+    desc.push_bytes = sizeof thick->push;
+    sf_graph_pass(frame->graph, &desc);
+}
+
+void sf_thick_blur(struct sf_method_frame *frame, const struct sf_thick *thick, const char *const names[2],
+                   const sf_resource images[3], bool tiled, const struct sf_thick_blur_push *push, uint32_t radius)
+{
+    for (uint32_t vertical = 0; vertical < 2; vertical++) {
+        const struct sf_use uses[] = {
+            {.resource = images[vertical], .access = SF_ACCESS_SAMPLED, .binding = 0},
+            {.resource = images[vertical + 1], .access = SF_ACCESS_STORAGE_WRITE, .binding = 1},
+            {.resource = thick->tiles, .access = SF_ACCESS_STORAGE_READ, .binding = 2},
+            {.resource = thick->mask, .access = SF_ACCESS_STORAGE_READ, .binding = 3},
+        };
+        sf_graph_pass(frame->graph,
+                      &(struct sf_pass_desc){
+                          .name = names[vertical],
+                          .kind = SF_PASS_COMPUTE,
+                          .shader = tiled ? "larsson/blur_tiles.comp" : "thick/blur.comp",
+                          .uses = uses,
+                          .use_count = tiled ? 4 : 2,
+                          .constants = {vertical, radius},
+                          .constant_count = 2,
+                          .push = push,
+                          .push_bytes = sizeof *push,
+                          .groups = {tiled ? 0 : sf_divide_up(push->width, SF_THICK_TILE),
+                                     tiled ? 0 : sf_divide_up(push->height, SF_THICK_TILE), tiled ? 0 : 1},
+                          .indirect = tiled ? thick->args : 0,
+                          .indirect_offset = SF_THICK_DISPATCH_TILES_OFFSET,
+                      });
+    }
+}
+
+sf_resource sf_thick_image(struct sf_graph *graph, const char *name, enum sf_format format, uint32_t width,
+                           uint32_t height)
+{
+    return sf_graph_image(graph, &(struct sf_image_desc){.name = name,
+                                                         .format = format,
+                                                         .lifetime = SF_TRANSIENT,
+                                                         .size = {.width = width, .height = height}});
+}
+
+sf_resource sf_thick_buffer(struct sf_graph *graph, const char *name, uint64_t bytes)
+{
+    return sf_graph_buffer(graph, &(struct sf_buffer_desc){.name = name, .lifetime = SF_TRANSIENT, .bytes = bytes});
+}
+
+void sf_thick_empty(struct sf_method_frame *frame, const struct sf_thick *thick, const char *name, sf_resource buffer)
+{
+    const struct sf_use uses[] = {{.resource = buffer, .access = SF_ACCESS_STORAGE_WRITE, .binding = 0}};
+    sf_thick_pass(frame, thick, uses, SF_COUNT(uses),
+                  (struct sf_pass_desc){.name = name,
+                                        .kind = SF_PASS_COMPUTE,
+                                        .shader = "thick/empty.comp",
+                                        .groups = {sf_divide_up(thick->push.tiles_x * thick->push.tiles_y, 64), 1, 1}});
+}
+
+void sf_thick_fit(struct sf_method_frame *frame, struct sf_thick *thick, bool around)
+{
+    thick->args = sf_thick_buffer(frame->graph, "thick.args", sizeof(struct sf_thick_args));
+    frame->smoke_views =
+        sf_thick_buffer(frame->graph, "thick.views", SF_FRAME_LIGHTS * sizeof(struct sf_gpu_light_view));
+    const struct sf_use fit[] = {
+        {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
+        {.resource = frame->counts, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
+        {.resource = frame->smoke_views, .access = SF_ACCESS_STORAGE_WRITE, .binding = 2},
+        {.resource = thick->args, .access = SF_ACCESS_STORAGE_WRITE, .binding = 3},
+    };
+    sf_thick_pass(frame, thick, fit, SF_COUNT(fit),
+                  (struct sf_pass_desc){.name = "thick.fit",
+                                        .kind = SF_PASS_COMPUTE,
+                                        .shader = "thick/fit.comp",
+                                        .constants = {around},
+                                        .constant_count = 1,
+                                        .groups = {1, 1, 1}});
+}
+
+enum sf_status sf_thick_targets(struct sf_method_frame *frame, struct sf_thick *thick, const struct sf_log *log)
+{
+    struct sf_graph *graph = frame->graph;
+    uint32_t width = thick->push.width, height = thick->push.height;
+    uint32_t tiles = thick->push.tiles_x * thick->push.tiles_y;
+    if (tiles > SF_THICK_TILES_MAX)
+        return sf_fail(log, SF_ERROR_USAGE,
+                       "thick: a smoke image of %ux%u has more than %d tiles; lower thick.resolution or the size",
+                       width, height, SF_THICK_TILES_MAX);
+    thick->smoke = sf_thick_image(graph, "smoke", SF_FORMAT_RGBA16F, width, height);
+    thick->smoke_depth = sf_thick_image(graph, "smoke.scene_depth", SF_FORMAT_R32F, width, height);
+    thick->atlas =
+        sf_graph_image(graph, &(struct sf_image_desc){.name = "thick.atlas",
+                                                      .format = SF_FORMAT_R8_UNORM,
+                                                      .lifetime = SF_IMPORTED,
+                                                      .size = {.width = SF_THICK_ATLAS, .height = SF_THICK_ATLAS},
+                                                      .outside = SF_ACCESS_SAMPLED});
+    thick->mask = sf_thick_buffer(graph, "thick.mask", 4ull * tiles);
+    thick->tiles = sf_thick_buffer(graph, "thick.tile_list", 4ull * tiles);
+    sf_thick_empty(frame, thick, "thick.unmark", thick->mask);
+    return SF_OK;
+}
+
+enum sf_status sf_thick_assets_create(struct sf_gpu *gpu, const struct sf_scene *scene, const struct sf_log *log,
+                                      void **assets)
+{
+    unsigned char *texels = malloc((size_t)SF_THICK_ATLAS * SF_THICK_ATLAS);
+    if (!texels)
+        return sf_fail(log, SF_ERROR_MEMORY, "thick.atlas: out of memory");
+    sf_thick_atlas((uint32_t)scene->sim.seed, SF_THICK_ATLAS, texels);
+    struct sf_gpu_image *image = NULL;
+    enum sf_status status = sf_gpu_image_create(gpu, "thick.atlas", SF_FORMAT_R8_UNORM, SF_THICK_ATLAS, SF_THICK_ATLAS,
+                                                1, SF_ACCESS_SAMPLED, texels, &image);
+    free(texels);
+    *assets = image;
+    return status;
+}
+
+bool sf_thick_assets_same(const struct sf_scene *a, const struct sf_scene *b)
+{
+    return a->sim.seed == b->sim.seed;
+}
+
+void sf_thick_assets_destroy(void **assets)
+{
+    if (!assets)
+        return;
+    struct sf_gpu_image *image = *assets;
+    sf_gpu_image_destroy(&image);
+    *assets = NULL;
+}
+
+void sf_thick_assets_bind(const struct sf_graph *graph, struct sf_player *player, void *assets)
+{
+    sf_resource atlas = sf_graph_find(graph, "thick.atlas");
+    if (atlas)
+        sf_player_bind_image(player, atlas, assets);
+}
