@@ -82,7 +82,7 @@ static uint32_t handle_color(const struct sf_handle *handle)
 void sf_input_draw_lights(struct sf_view *view)
 {
     struct sf_handle handles[SF_HANDLES_MAX];
-    unsigned count = view->lights_shown && !view->looking.values ? find_handles(view, handles) : 0;
+    unsigned count = view->lights_shown && !sf_view_looked(view)->values ? find_handles(view, handles) : 0;
     float x0 = view->picture[0], y0 = view->picture[1], radius = 6 * sf_ui_scale();
 
     if (count == 0)
@@ -111,7 +111,7 @@ static enum sf_hold press(struct sf_view *view, int button, float x, float y)
 {
     int mods = sf_screen_mods(view->screen);
 
-    if (view->looking.values)
+    if (sf_view_looked(view)->values)
         return SF_HOLD_LOOKED;
     if (button == 0 && view->lights_shown) {
         struct sf_handle handles[SF_HANDLES_MAX];
@@ -145,7 +145,7 @@ static void take_mouse(struct sf_view *view)
     for (int button = 0; button < 3 && view->hold == SF_HOLD_NONE; button++)
         if (sf_ui_mouse_clicked(button) && !sf_ui_takes_mouse() && in_picture(view, x, y))
             view->hold = press(view, button, x, y);
-    if (wheel != 0 && !sf_ui_takes_mouse() && in_picture(view, x, y) && !view->looking.values) {
+    if (wheel != 0 && !sf_ui_takes_mouse() && in_picture(view, x, y) && !sf_view_looked(view)->values) {
         sf_rig_dolly(&view->rig, wheel);
         sf_view_moved(view);
     }
@@ -218,6 +218,8 @@ static void escape(struct sf_view *view)
 {
     if (view->keys_shown)
         view->keys_shown = false;
+    else if (view->against.open && (view->against.wanted || view->against.comparison) && !view->against.gone)
+        sf_against_stop(view);
     else if (view->looking.name[0])
         sf_view_look(view, "");
     else if (sf_screen_fullscreen(view->screen))
@@ -316,6 +318,11 @@ static void plain_key(struct sf_view *view, int key, int mods)
         break;
     case GLFW_KEY_R:
         sf_view_record(view);
+        break;
+    case GLFW_KEY_T:
+        view->tab = SF_TABS - 1;
+        view->panels = true;
+        sf_against_begin(view);
         break;
     case GLFW_KEY_F:
         frame_smoke(view);

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "heat.h"
 #include "view.h"
 
 enum { CHANNELS = 4 };
@@ -191,6 +192,12 @@ static void find_ranges(struct sf_looking *looking)
     struct extremes found[CHANNELS];
     uint32_t first, count = shown_channels(looking, &first);
 
+    if (looking->heat) { /* as far on both sides of 0 */
+        looking->high = sf_heat_scale(looking->values, (size_t)looking->width * looking->height);
+        looking->low = looking->ranges[0][0] = -looking->high;
+        looking->ranges[0][1] = looking->high;
+        return;
+    }
     for (uint32_t c = 0; c < count; c++)
         found[c] = extremes_of(looking, first + c);
     if (count == 3 && alike(found)) {
@@ -234,6 +241,7 @@ struct maps {
     struct map map[3];
     uint32_t first, count; /* channels shown */
     bool automatic;
+    float heat; /* the end of a heat map's scale; 0: none */
 };
 
 static struct map map_of(const float range[2], bool logarithmic)
@@ -261,7 +269,7 @@ static uint8_t map_value(const struct map *map, float value)
 static struct maps maps_of(const struct sf_looking *looking)
 {
     const float given[2] = {looking->low, looking->high};
-    struct maps maps = {.automatic = looking->automatic};
+    struct maps maps = {.automatic = looking->automatic, .heat = looking->heat ? looking->high : 0};
 
     maps.count = shown_channels(looking, &maps.first);
     for (uint32_t c = 0; c < maps.count; c++)
@@ -275,6 +283,10 @@ static void color_of(const struct maps *maps, const float *values, uint8_t rgb[3
 
     if (maps->automatic && !counts(value[0])) {
         memcpy(rgb, NOTHING, 3);
+        return;
+    }
+    if (maps->heat > 0) {
+        sf_heat_color(value[0], maps->heat, rgb);
         return;
     }
     rgb[0] = map_value(&maps->map[0], value[0]);
@@ -449,7 +461,7 @@ void sf_looking_take(struct sf_looking *looking, const struct sf_frame *frame)
     looking->width = values ? frame->inspected_width : 0;
     looking->height = values ? frame->inspected_height : 0;
     looking->channels = values ? frame->inspected_channels : 0;
-    if (looking->version++ == 0 && values && looking->automatic)
+    if (looking->version++ == 0 && values && looking->automatic && !looking->heat)
         looking->logarithmic = wants_logarithms(looking);
     if (values)
         update_ranges(looking); /* the panels say them before the pixels are made */

@@ -156,7 +156,8 @@ void sf_panel_keys(struct sf_view *view)
         {"Ctrl+C, Ctrl+S", "copy as command line, save as scene"},
         {"Ctrl+Z", "all parameters as in the file"},
         {"Ctrl+F, /", "search the parameters"},
-        {"Tab, F2 to F6", "panels away and back, their tabs"},
+        {"T", "compare with the reference now"},
+        {"Tab, F2 to F7", "panels away and back, their tabs"},
         {"F11", "full screen"},
         {"?, Esc, Ctrl+Q", "this list, back, close"},
     };

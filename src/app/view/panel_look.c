@@ -369,13 +369,13 @@ static void draw_read_out(const struct sf_view *view, const struct read_out *rea
 }
 
 /* A frame about the texel, when it is large enough to be seen. */
-static void mark_texel(const struct sf_view *view, uint32_t column, uint32_t row)
+void sf_panel_look_mark(const struct sf_view *view, const struct sf_looking *looking, uint32_t column, uint32_t row)
 {
-    float scale = sf_looking_scale(&view->looking, view->picture[2], view->picture[3]), x, y;
+    float scale = sf_looking_scale(looking, view->picture[2], view->picture[3]), x, y;
 
     if (scale < 4)
         return;
-    sf_looking_spot(&view->looking, view->picture[2], view->picture[3], column, row, &x, &y);
+    sf_looking_spot(looking, view->picture[2], view->picture[3], column, row, &x, &y);
     x += view->picture[0] - scale / 2;
     y += view->picture[1] - scale / 2;
     sf_ui_draw_rectangle(x - 1, y - 1, scale + 2, scale + 2, 0xa0000000, false);
@@ -398,9 +398,8 @@ static void draw_caption(const struct sf_view *view, const struct sf_data_resour
     sf_ui_draw_text(x + 8 * scale, y + 4 * scale, sf_ui_plain, text);
 }
 
-static void move_image(struct sf_view *view, float x, float y, bool inside)
+void sf_panel_look_move(const struct sf_view *view, struct sf_looking *looking, float x, float y, bool inside)
 {
-    struct sf_looking *looking = &view->looking;
     float width = view->picture[2], height = view->picture[3], dx, dy;
 
     sf_ui_mouse_moved(&dx, &dy);
@@ -422,7 +421,7 @@ void sf_panel_looked(struct sf_view *view)
     float x, y, mouse_x, mouse_y;
     bool inside;
 
-    if (!view->looking.values)
+    if (sf_view_looked(view) != &view->looking || !view->looking.values)
         return;
     graph = sf_graph_data_frame(sf_graph_data_refresh(&view->graph, view->renderer, view->graph_version, &view->log));
     index = graph ? sf_data_find(graph, view->looking.name) : SF_DATA_NONE;
@@ -432,14 +431,14 @@ void sf_panel_looked(struct sf_view *view)
     x = mouse_x - view->picture[0];
     y = mouse_y - view->picture[1];
     inside = x >= 0 && y >= 0 && x < view->picture[2] && y < view->picture[3] && !sf_ui_takes_mouse();
-    move_image(view, x, y, inside);
+    sf_panel_look_move(view, &view->looking, x, y, inside);
     sf_ui_draw_behind();
     sf_ui_draw_clip(view->picture[0], view->picture[1], view->picture[2], view->picture[3]);
     draw_caption(view, resource);
     if (inside && sf_looking_texel(&view->looking, view->picture[2], view->picture[3], x, y, &column, &row)) {
         struct read_out read = read_texel(view, resource ? resource->layers : 1, column, row);
 
-        mark_texel(view, column, row);
+        sf_panel_look_mark(view, &view->looking, column, row);
         draw_read_out(view, &read, mouse_x, mouse_y);
     }
     sf_ui_draw_unclip();

@@ -169,6 +169,7 @@ enum sf_status sf_picture_accept(void *user, const struct sf_scene *scene)
     if (status)
         return status;
     drop_coarse(view);
+    view->content++;
     view->refused[0] = view->refused[1] = 0; /* what another scene needs is another matter */
     sf_scene_describe(scene, &info);
     view->playback.fps = info.fps;
@@ -297,16 +298,15 @@ static enum sf_status draw(struct sf_view *view, struct sf_flight *flight)
     return status;
 }
 
-/* As the scene says, at full quality, with everything back. */
-static enum sf_status shoot(struct sf_view *view)
+/* One picture as the scene says, at full quality, with everything of `wanted` back, handed to `take`. */
+static enum sf_status draw_once(struct sf_view *view, struct sf_renderer_options wanted,
+                                void (*take)(struct sf_view *view, const struct sf_frame *frame))
 {
-    struct sf_renderer_options wanted = wanted_options(view);
+    const struct sf_renderer_options before = wanted_options(view);
     struct sf_flight flight;
     struct sf_frame frame;
     enum sf_status status = view->governor.level ? set_level(view, 0) : SF_OK;
 
-    view->shot = false;
-    wanted.returned = true;
     if (!status)
         status = set_options(view, &wanted);
     if (status == SF_ERROR_MEMORY) /* it has been said; everything is as it was */
@@ -316,9 +316,32 @@ static enum sf_status shoot(struct sf_view *view)
     if (!status)
         status = sf_renderer_wait(view->renderer, flight.ticket, &frame);
     if (!status)
-        sf_picture_store(view, &frame);
-    wanted.returned = false;
-    return status ? status : set_options(view, &wanted);
+        take(view, &frame);
+    return status ? status : set_options(view, &before);
+}
+
+static void store(struct sf_view *view, const struct sf_frame *frame)
+{
+    sf_picture_store(view, frame);
+}
+
+static enum sf_status shoot(struct sf_view *view)
+{
+    struct sf_renderer_options wanted = wanted_options(view);
+
+    view->shot = false;
+    wanted.returned = true;
+    return draw_once(view, wanted, store);
+}
+
+static enum sf_status compare(struct sf_view *view)
+{
+    struct sf_renderer_options wanted = wanted_options(view);
+
+    view->against.wanted = false; /* when there is no memory for it, that has been said */
+    wanted.returned = wanted.particles = wanted.float_aovs = true;
+    wanted.aovs = SF_AOV_SMOKE | SF_AOV_DEPTHS;
+    return draw_once(view, wanted, sf_against_take);
 }
 
 enum sf_status sf_picture_update(struct sf_view *view, bool *drawn)
@@ -330,13 +353,16 @@ enum sf_status sf_picture_update(struct sf_view *view, bool *drawn)
     if (!status)
         status = govern(view);
     /* A way that was begun is gone to its end, also when that is the frame drawn last: the simulation has left it. */
-    if (status || !(view->dirty || view->shot || view->seek_total > 0 || view->playback.frame != view->drawn_frame))
+    if (status || !(view->dirty || view->shot || sf_against_due(view) || view->seek_total > 0 ||
+                    view->playback.frame != view->drawn_frame))
         return status;
     status = go_to(view, view->playback.frame, &there);
     if (status || !there)
         return status;
     if (view->shot && !sf_shots_recording(view->shots))
         return shoot(view);
+    if (sf_against_due(view) && !sf_shots_recording(view->shots))
+        return compare(view);
     view->shot = false; /* a recording has the picture already */
     status = sf_picture_collect(view, SF_FLIGHT - 1);
     if (!status)

@@ -15,6 +15,7 @@
 #include "graph_data.h"
 
 static const double WATCH_S = 0.25;     /* how long it sleeps at most, so that edited files are seen */
+static const double COMPUTING_S = 0.1;  /* while the reference is, so that its progress is */
 static const double MINIMISED_S = 0.5;  /* and while there is nothing to see */
 static const uint32_t SIDE_LEAST = 160; /* px of picture beside the panel, or there is no panel */
 enum { BARE_PIXELS = 240, TURNS_AWAKE = 3 };
@@ -86,11 +87,8 @@ static void draw_tabs(struct sf_view *view)
     static const struct {
         const char *name;
         void (*draw)(struct sf_view *view);
-    } tabs[SF_TABS] = {{"Parameters", sf_panel_parameters},
-                       {"Scene", sf_panel_scene},
-                       {"Images", sf_panel_look},
-                       {"Graph", sf_panel_graph},
-                       {"Times", sf_panel_times}};
+    } tabs[SF_TABS] = {{"Parameters", sf_panel_parameters}, {"Scene", sf_panel_scene}, {"Images", sf_panel_look},
+                       {"Graph", sf_panel_graph},           {"Times", sf_panel_times}, {"Truth", sf_panel_truth}};
 
     if (!sf_ui_tabs_begin("tabs"))
         return;
@@ -110,6 +108,7 @@ static void draw_panels(struct sf_view *view, uint32_t width, uint32_t height)
 {
     float side = panel_width(view, width, height), bar = bar_height(view, width, height);
 
+    view->against.open = false;
     if (side > 0) {
         if (sf_ui_panel_begin("side", (float)width - side, 0, side, (float)height,
                               SF_UI_FIXED | SF_UI_UNTITLED | SF_UI_SOLID, NULL))
@@ -119,6 +118,7 @@ static void draw_panels(struct sf_view *view, uint32_t width, uint32_t height)
     }
     sf_input_draw_lights(view);
     sf_panel_looked(view);
+    sf_panel_truth_over(view);
     sf_panel_notes(view);
     sf_panel_keys(view);
 }
@@ -133,6 +133,7 @@ static void watch_files(struct sf_view *view)
     if (view->reload)
         sf_reload_poll(view->reload, sf_now_ns(), &compiled);
     view->dirty = view->dirty || compiled;
+    view->content += compiled;
     view->settle = view->settle || renewed || compiled;
 }
 
@@ -167,7 +168,7 @@ static enum sf_status show(struct sf_view *view, const struct sf_overlay *overla
                                     .overlay = overlay};
     enum sf_status status;
 
-    frame.pixels = sf_looking_pixels(&view->looking, (uint32_t)view->picture[2], (uint32_t)view->picture[3],
+    frame.pixels = sf_looking_pixels(sf_view_looked(view), (uint32_t)view->picture[2], (uint32_t)view->picture[3],
                                      &frame.pixels_width, &frame.pixels_height);
     status = sf_window_show(view->window, &frame);
     view->counted.shown++;
@@ -190,15 +191,17 @@ static enum sf_status show(struct sf_view *view, const struct sf_overlay *overla
 /* How long the loop may sleep. */
 static double rest(const struct sf_view *view, unsigned awake, bool minimised)
 {
-    double due = sf_playback_due(&view->playback, sf_now_ns()), ui = sf_ui_due();
+    double due = sf_playback_due(&view->playback, sf_now_ns()), ui = sf_ui_due(), most = WATCH_S;
 
     if (minimised)
         return MINIMISED_S;
     due = ui < due ? ui : due;
     if (awake > 0 || view->dirty || view->settle || view->shot || view->seek_total > 0 || view->hold == SF_HOLD_LOOK ||
-        sf_picture_pending(view) || view->governor.level > 0)
+        sf_against_due(view) || sf_picture_pending(view) || view->governor.level > 0)
         return 0;
-    return due < WATCH_S ? due : WATCH_S;
+    if (sf_against_busy(view))
+        most = COMPUTING_S;
+    return due < most ? due : most;
 }
 
 static enum sf_status draw_turn(struct sf_view *view, double seconds)
@@ -223,6 +226,7 @@ static enum sf_status draw_turn(struct sf_view *view, double seconds)
     sf_input_take(view, seconds);
     sf_ui_end(view->ui, &overlay);
     sf_input_feed(view, keys, key_count, false);
+    sf_against_update(view); /* what was changed in this turn is not shown as compared */
     status = sf_picture_update(view, &drawn);
     if (!status)
         status = show(view, &overlay);
@@ -260,6 +264,7 @@ static enum sf_status loop(struct sf_view *view)
         minimised = width == 0;
         now = sf_now_ns();
         watch_files(view);
+        sf_against_update(view);
         if (minimised) {
             view->playback.last_ns = now;
             continue;
@@ -399,6 +404,8 @@ static enum sf_status open_all(struct sf_view *view)
     place(view, width > 0 ? width : view->settings.width, height > 0 ? height : view->settings.height);
     sf_view_look(view, arguments->inspect ? arguments->inspect : "");
     view->looking.zoom = 1;
+    view->against.heat = (struct sf_looking){.heat = true, .automatic = true, .zoom = 1};
+    view->against.stride = 2;
     view->handle = view->tab = -1;
     sf_playback_init(&view->playback, view->model.info.fps);
     sf_playback_seek(&view->playback, arguments->first_frame);
@@ -449,6 +456,7 @@ static enum sf_status write_report(const struct sf_view *view)
 
 static void close_all(struct sf_view *view)
 {
+    sf_against_finish(view);
     sf_graph_data_destroy(&view->graph);
     sf_looking_finish(&view->looking);
     sf_shots_destroy(&view->shots);

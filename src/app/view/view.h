@@ -6,6 +6,7 @@
 #include <pthread.h>
 
 #include "../options.h"
+#include "comparison.h"
 #include "governor.h"
 #include "lights.h"
 #include "model.h"
@@ -18,7 +19,7 @@
 #include "stats.h"
 #include "ui.h"
 
-enum { SF_TABS = 5, SF_NOTES = 6, SF_NOTE_BYTES = 512, SF_NAME_BYTES = 64, SF_FLIGHT = 2 };
+enum { SF_TABS = 6, SF_NOTES = 6, SF_NOTE_BYTES = 512, SF_NAME_BYTES = 64, SF_FLIGHT = 2 };
 
 /* A message that stays in the picture's corner for a while: errors until they are clicked away. */
 struct sf_note {
@@ -44,6 +45,7 @@ struct sf_looking {
     uint64_t version; /* counts copies */
     bool automatic;   /* the range follows the values */
     bool logarithmic;
+    bool heat;                /* one channel of signed differences, coloured by heat.h; low is -high */
     int channel;              /* 0: all as colours; 1..4: that one as grey */
     float low, high;          /* the range that becomes 0..1; of the widest channel while it is automatic */
     float ranges[3][2];       /* automatic: of the channels shown; */
@@ -51,6 +53,34 @@ struct sf_looking {
     uint8_t *pixels;          /* mapped, RGBA */
     uint64_t mapped;          /* hash of what pixels were mapped from */
     float zoom, pan_x, pan_y; /* 1: fits the picture's place; pan in px */
+};
+
+/* What a picture follows from. */
+struct sf_subject {
+    uint64_t content; /* sf_view.content */
+    uint32_t frame, width, height;
+    struct sf_camera_view eye;
+};
+
+/* Of sf_against.kind: enum sf_difference, and this. */
+enum { SF_AGAINST_PICTURE = 2 };
+
+/* The frame held against the reference. */
+struct sf_against {
+    struct sf_comparison *comparison; /* NULL: none */
+    struct sf_subject subject;        /* that it is of */
+    bool wanted;                      /* one is to begin with the next picture, */
+    bool gone;                        /* once this one, of which nothing is shown any more, has stopped */
+    bool outdated;                    /* the last one went because something changed */
+    uint64_t seen;                    /* its version */
+    bool mapped;                      /* it was done, and has been shown */
+    struct sf_looking heat;           /* shown in the picture's place while the tab is open and it has values */
+    int stride, kind;                 /* choices: log2; enum sf_difference or SF_AGAINST_PICTURE */
+    bool open;                        /* the tab */
+    bool probe_wanted, pinned;
+    uint32_t pixel[2]; /* of the frame: probed */
+    bool pressed;      /* the mouse, in the picture, at */
+    float pressed_at[2];
 };
 
 /* What the mouse, pressed in the picture, is doing. */
@@ -107,6 +137,7 @@ struct sf_view {
     bool closing;
     bool shot; /* a screenshot is wanted */
     struct sf_looking looking;
+    struct sf_against against;
     struct sf_graph_data *graph;     /* graph_data.h; read off at graph->version; sf_graph_data_destroy at the end */
     char look_search[SF_NAME_BYTES]; /* in the graph's resources */
     int words_as;                    /* of a buffer: 0 what is likely, 1 float, 2 uint, 3 hex */
@@ -123,6 +154,7 @@ struct sf_view {
     char save_path[512];
     char saved_path[512];   /* that may be replaced without asking */
     uint64_t graph_version; /* counts remade graphs: what was read off the old one is stale */
+    uint64_t content;       /* counts changes of scene and shaders */
     uint64_t input_ns;      /* when the input that this picture answers came; 0: none */
 };
 
@@ -150,6 +182,18 @@ enum sf_status sf_picture_store(struct sf_view *view, const struct sf_frame *fra
 /* Something of the picture is still on its way. */
 bool sf_picture_pending(const struct sf_view *view);
 
+/* ---- against.c: the comparison with the reference ---- */
+void sf_against_begin(struct sf_view *view); /* of the picture as it stands; pauses */
+void sf_against_stop(struct sf_view *view);  /* and shows the picture again */
+/* A picture with the smoke alone and the particles is wanted, for take. */
+bool sf_against_due(const struct sf_view *view);
+void sf_against_take(struct sf_view *view, const struct sf_frame *frame);
+/* Every turn: stops what no longer holds, shows what has come. */
+void sf_against_update(struct sf_view *view);
+void sf_against_show(struct sf_view *view); /* after `kind` has changed */
+bool sf_against_busy(const struct sf_view *view);
+void sf_against_finish(struct sf_view *view);
+
 /* ---- actions (actions.c); failures have been said through the log ---- */
 void sf_view_set(struct sf_view *view, const char *assignment);
 void sf_view_apply(struct sf_view *view, const struct sf_control *control); /* a copy with another value */
@@ -169,16 +213,28 @@ void sf_view_opened(struct sf_view *view);
 void sf_view_stem(const struct sf_view *view, char *stem, size_t room);
 void sf_view_note(struct sf_view *view, enum sf_log_level level, const char *format, ...);
 
-/* ---- panels: drawn inside of the side panel's tabs, but for the last four ---- */
+/* ---- panels: drawn inside of the side panel's tabs, but for the last five ---- */
 void sf_panel_parameters(struct sf_view *view); /* panel_parameters.c */
 void sf_panel_scene(struct sf_view *view);      /* panel_scene.c: scene, method, files, camera, lights, window */
 void sf_panel_look(struct sf_view *view);       /* panel_look.c: resources of the graph */
 void sf_panel_graph(struct sf_view *view);      /* panel_graph.c: the graph as a drawing */
 void sf_panel_times(struct sf_view *view);      /* panel_times.c */
+void sf_panel_truth(struct sf_view *view);      /* panel_truth.c: the comparison with the reference */
+void sf_panel_truth_over(struct sf_view *view); /* panel_truth.c: the map's scale, the probe's mouse */
 void sf_panel_looked(struct sf_view *view);     /* panel_look.c: read-out over the picture, zoom and pan */
 void sf_panel_bar(struct sf_view *view, float x, float y, float width, float height); /* panel_bar.c: time */
 void sf_panel_notes(struct sf_view *view);                                            /* panel_bar.c */
 void sf_panel_keys(struct sf_view *view);                                             /* panel_bar.c */
+
+/* panel_look.c: zoom and pan by the mouse at (x, y) of the picture's place; a frame about a texel. */
+void sf_panel_look_move(const struct sf_view *view, struct sf_looking *looking, float x, float y, bool inside);
+void sf_panel_look_mark(const struct sf_view *view, const struct sf_looking *looking, uint32_t column, uint32_t row);
+
+/* What is shown in the picture's place when it has values. */
+static inline struct sf_looking *sf_view_looked(struct sf_view *view)
+{
+    return view->against.open && view->against.heat.values ? &view->against.heat : &view->looking;
+}
 
 /* looking.c: the looked-at image as RGBA pixels for sf_window_show, as large as the picture's place in px with zoom and pan
  * in them; mapped anew when something changed. NULL: show the picture. */
