@@ -11,17 +11,16 @@
 static const float LUMINANCE[3] = {0.2126f, 0.7152f, 0.0722f}; /* ITU-R BT.709 */
 
 struct sf_comparison {
-    const struct sf_log *heard_by;
-    struct sf_log log; /* to that, and errors into `message` */
+    struct sf_log log; /* to `heard_by`, and errors into `message` */
     struct sf_reference *reference;
     float *smoke, *depths; /* the method's, of all pixels */
     uint32_t width, height, stride;
-    pthread_t renders, probes;
-    bool renders_begun, probes_begun;
     uint64_t begin_ns;
 
     pthread_mutex_t lock; /* of all that follows */
     pthread_cond_t asked;
+    unsigned users; /* threads, and whoever began it: the last one frees it */
+    const struct sf_log *heard_by;
     enum sf_comparison_stage stage;
     bool stop, rendering, probing;
     uint64_t done, total, version;
@@ -39,12 +38,28 @@ static void hear(void *user, enum sf_log_level level, const char *message)
 {
     struct sf_comparison *comparison = user;
 
-    if (level == SF_LOG_ERROR) {
-        pthread_mutex_lock(&comparison->lock);
+    pthread_mutex_lock(&comparison->lock);
+    if (level == SF_LOG_ERROR)
         snprintf(comparison->message, sizeof comparison->message, "%s", message);
-        pthread_mutex_unlock(&comparison->lock);
-    }
-    sf_log_line(comparison->heard_by, level, "%s", message);
+    sf_log_line(comparison->heard_by, level, "%s", message); /* locked: who listens may be gone after it */
+    pthread_mutex_unlock(&comparison->lock);
+}
+
+/* Holding the lock, which is given back. */
+static void leave(struct sf_comparison *comparison)
+{
+    bool last = --comparison->users == 0;
+
+    pthread_mutex_unlock(&comparison->lock);
+    if (!last)
+        return;
+    pthread_cond_destroy(&comparison->asked);
+    pthread_mutex_destroy(&comparison->lock);
+    sf_reference_picture_destroy(&comparison->picture);
+    sf_reference_destroy(&comparison->reference);
+    free(comparison->smoke);
+    free(comparison->depths);
+    free(comparison);
 }
 
 /* ---- the reference's picture ---- */
@@ -80,13 +95,13 @@ static void *render(void *user)
     comparison->seconds = (double)(sf_now_ns() - comparison->begin_ns) * 1e-9;
     comparison->rendering = false;
     if (comparison->stop)
-        comparison->stage = SF_COMPARISON_STOPPED;
+        comparison->stage = comparison->stage == SF_COMPARISON_FAILED ? SF_COMPARISON_FAILED : SF_COMPARISON_STOPPED;
     else
         comparison->stage = status ? SF_COMPARISON_FAILED : SF_COMPARISON_DONE;
     if (status && !comparison->message[0])
         snprintf(comparison->message, sizeof comparison->message, "the reference cannot be computed");
     comparison->version++;
-    pthread_mutex_unlock(&comparison->lock);
+    leave(comparison);
     return NULL;
 }
 
@@ -126,16 +141,16 @@ static void *probe_when_asked(void *user)
         comparison->probed = true;
         comparison->version++;
     }
-    pthread_mutex_unlock(&comparison->lock);
+    leave(comparison);
     return NULL;
 }
 
 void sf_comparison_probe(struct sf_comparison *comparison, uint32_t x, uint32_t y)
 {
-    if (!comparison->probes_begun || x >= comparison->width || y >= comparison->height)
+    if (x >= comparison->width || y >= comparison->height)
         return;
     pthread_mutex_lock(&comparison->lock);
-    comparison->wanted = true;
+    comparison->wanted = comparison->stage != SF_COMPARISON_FAILED && !comparison->stop;
     comparison->wanted_at[0] = x;
     comparison->wanted_at[1] = y;
     pthread_cond_broadcast(&comparison->asked);
@@ -182,14 +197,26 @@ static enum sf_status take(struct sf_comparison *comparison, const struct sf_sce
     return sf_reference_create(scene, frame, &options, &comparison->log, &comparison->reference);
 }
 
+static bool begin_thread(struct sf_comparison *comparison, void *(*work)(void *user))
+{
+    pthread_t thread;
+    bool begun;
+
+    pthread_mutex_lock(&comparison->lock); /* until it is counted */
+    begun = pthread_create(&thread, NULL, work, comparison) == 0;
+    comparison->users += begun;
+    if (begun)
+        pthread_detach(thread);
+    pthread_mutex_unlock(&comparison->lock);
+    return begun;
+}
+
 static enum sf_status begin_threads(struct sf_comparison *comparison)
 {
-    comparison->rendering = true;
-    comparison->renders_begun = pthread_create(&comparison->renders, NULL, render, comparison) == 0;
-    comparison->rendering = comparison->renders_begun;
-    comparison->probes_begun =
-        comparison->renders_begun && pthread_create(&comparison->probes, NULL, probe_when_asked, comparison) == 0;
-    if (comparison->probes_begun)
+    comparison->rendering = true; /* nobody else is there yet */
+    if (!begin_thread(comparison, render))
+        comparison->rendering = false;
+    else if (begin_thread(comparison, probe_when_asked))
         return SF_OK;
     sf_comparison_stop(comparison);
     return sf_log_fail(&comparison->log, SF_ERROR_MEMORY, "no thread can be started");
@@ -211,6 +238,7 @@ struct sf_comparison *sf_comparison_begin(const struct sf_scene *scene, const st
     comparison->begin_ns = sf_now_ns();
     pthread_mutex_init(&comparison->lock, NULL);
     pthread_cond_init(&comparison->asked, NULL);
+    comparison->users = 1;
     status = take(comparison, scene, frame, threads);
     if (!status)
         status = begin_threads(comparison);
@@ -239,17 +267,9 @@ void sf_comparison_destroy(struct sf_comparison **out)
     if (!comparison)
         return;
     sf_comparison_stop(comparison);
-    if (comparison->renders_begun)
-        pthread_join(comparison->renders, NULL);
-    if (comparison->probes_begun)
-        pthread_join(comparison->probes, NULL);
-    pthread_cond_destroy(&comparison->asked);
-    pthread_mutex_destroy(&comparison->lock);
-    sf_reference_picture_destroy(&comparison->picture);
-    sf_reference_destroy(&comparison->reference);
-    free(comparison->smoke);
-    free(comparison->depths);
-    free(comparison);
+    pthread_mutex_lock(&comparison->lock);
+    comparison->heard_by = NULL;
+    leave(comparison);
     *out = NULL;
 }
 

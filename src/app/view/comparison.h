@@ -36,11 +36,12 @@ struct sf_comparison;
  * `log` (any thread), and stays as the comparison's message. NULL: memory is out. */
 struct sf_comparison *sf_comparison_begin(const struct sf_scene *scene, const struct sf_frame *frame, uint32_t stride,
                                           unsigned threads, const struct sf_log *log);
-/* Stops it and waits for its threads, the reference's rows in hand included. */
+/* Does not wait: a thread that is at work stops after the reference's rows in hand, which may take long where very many
+ * spheres overlap, and frees what it used. */
 void sf_comparison_destroy(struct sf_comparison **comparison);
 /* Asks it to stop, and returns at once. */
 void sf_comparison_stop(struct sf_comparison *comparison);
-/* A thread is still at work: destroying it would wait. */
+/* A thread is still at work. */
 bool sf_comparison_busy(struct sf_comparison *comparison);
 enum sf_comparison_stage sf_comparison_stage(struct sf_comparison *comparison);
 /* Rows of the reference that are done, 0..*total. */

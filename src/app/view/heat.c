@@ -4,8 +4,8 @@
 
 /* From 0 to the end of the scale, in even steps of it; the light of the steps rises alike on both sides. */
 enum { STEPS = 4 };
-static const float ABOVE[STEPS + 1][3] = {{38, 39, 42}, {112, 40, 34}, {193, 63, 39}, {242, 128, 66}, {255, 226, 176}};
-static const float BELOW[STEPS + 1][3] = {{38, 39, 42}, {31, 56, 116}, {39, 97, 196}, {74, 162, 243}, {186, 234, 255}};
+static const float ABOVE[STEPS + 1][3] = {{40, 40, 40}, {112, 40, 34}, {193, 63, 39}, {242, 128, 66}, {255, 226, 176}};
+static const float BELOW[STEPS + 1][3] = {{40, 40, 40}, {31, 56, 116}, {39, 97, 196}, {74, 162, 243}, {186, 234, 255}};
 static const float LEAST = 1e-6f;
 
 float sf_heat_scale(const float *values, size_t count)

@@ -23,7 +23,7 @@ static void choose_stride(struct sf_view *view)
     uint32_t stride;
 
     sf_ui_width(4.5f * sf_ui_line());
-    if (sf_ui_choice("of the picture's sides", &view->against.stride, strides) && view->against.comparison)
+    if (sf_ui_choice("of each side", &view->against.stride, strides) && view->against.comparison)
         sf_against_begin(view);
     sf_ui_tooltip("The reference of one pixel of each block of so many: a quarter of the sides is a sixteenth of the "
                   "time. The method's picture is not made smaller: its pixel at the same place is compared.");
