@@ -99,13 +99,16 @@ static void draw_errors(const struct sf_errors *errors)
     unsigned missed = sf_goals_missed(errors);
     char text[TEXT_BYTES];
 
-    snprintf(text, sizeof text, "mean %.3g   max %.3g", errors->transmittance_mean, errors->transmittance_max);
-    say("transmittance", missed & (SF_GOAL_MEAN | SF_GOAL_MAX),
-        "Of the difference's size over all pixels. Goals: mean 0.002, max 0.02 (of alpha, too).", text);
-    snprintf(text, sizeof text, "at %" PRIu32 ", %" PRIu32, errors->worst[0], errors->worst[1]);
-    say("", false, "", text);
-    snprintf(text, sizeof text, "mean %.3g   max %.3g", errors->alpha_mean, errors->alpha_max);
-    say("1 - alpha", false, "The same of what the picture is laid over the background by.", text);
+    snprintf(text, sizeof text, "mean %.3g", errors->transmittance_mean);
+    say("transmittance", missed & SF_GOAL_MEAN,
+        "Of the difference's size over all pixels. Goals: mean 0.002, max 0.02 (of 1 - alpha, too).", text);
+    snprintf(text, sizeof text, "max %.3g at %" PRIu32 ", %" PRIu32, errors->transmittance_max, errors->worst[0],
+             errors->worst[1]);
+    say("", missed & SF_GOAL_MAX, "The pixel with the greatest difference.", text);
+    snprintf(text, sizeof text, "mean %.3g", errors->alpha_mean);
+    say("1 - alpha", missed & SF_GOAL_MEAN, "The same of what the picture is laid over the background by.", text);
+    snprintf(text, sizeof text, "max %.3g", errors->alpha_max);
+    say("", missed & SF_GOAL_MAX, "The same of what the picture is laid over the background by.", text);
     snprintf(text, sizeof text, "%.4g", errors->relative_mse);
     say("relative MSE", missed & SF_GOAL_MSE,
         "Of the radiance: sum of (method - reference)^2 over sum of reference^2. Goal: 0.01.", text);

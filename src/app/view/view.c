@@ -406,6 +406,7 @@ static enum sf_status open_all(struct sf_view *view)
     view->looking.zoom = 1;
     view->against.heat = (struct sf_looking){.heat = true, .automatic = true, .zoom = 1};
     view->against.stride = 2;
+    view->against.pixel[0] = UINT32_MAX; /* none yet */
     view->handle = view->tab = -1;
     sf_playback_init(&view->playback, view->model.info.fps);
     sf_playback_seek(&view->playback, arguments->first_frame);
