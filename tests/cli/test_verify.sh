@@ -36,8 +36,8 @@ cp "$SFUMATO" alone
 grep -q "needs SCENE" err || { fail "verify without any scenes does not say so"; cat err; }
 
 need_device
-small="-s 24x20 --time-size 32x32 --repeats 1"
-expect 2 "--methods none: it has no layers" verify "$scene" $small --methods none
+small="-s 24x20 --time-size 32x32 --repeats 1 --methods thick"
+expect 2 "--methods none: it has no layers" verify "$scene" -s 24x20 --methods none
 expect 0 "one-puff" verify "$scene" $small --goals
 grep -qE "^one-puff .* (pass|miss: .*)$" out || { fail "no row says whether it reaches the goals"; cat out; }
 expect 0 "note: one-puff, thick: thick.detail is 0.5" verify "$scene" $small --set thick.detail=0.5
@@ -49,7 +49,7 @@ cat >many.json <<'END'
 {"sim": {"capacity": 100000}, "camera": {"eye": [0, 1, 6], "target": [0, 1, 0]}, "thick": {"detail": 0},
  "lights": [{"type": "directional", "direction": [1, -1, -1]}], "emitters": [{"type": "list", "still": true, "file": "many.csv"}]}
 END
-expect 0 "many: one pixel of each 2x2 is compared" verify many.json -s 40x40 --repeats 0 --stride 2
+expect 0 "many: one pixel of each 2x2 is compared" verify many.json -s 40x40 --repeats 0 --stride 2 --methods thick
 # Two scenes, two frames, several settings.
 expect 0 "steps=32" verify "$scene" "$tiny/sphere.json" $small --frames 0,1 --settings --set thick.detail=0
 [ "$(grep -c "^one-puff .* steps=2 " out)" -eq 2 ] || { fail "not a row for each frame"; cat out; }
@@ -71,9 +71,9 @@ assert 0 <= row["transmittance"]["mean"] <= row["transmittance"]["max"] < 1
 assert 0 < row["radiance"]["relative_mse"] < 1 and row["goals"]["transmittance_max"] in (True, False)
 END
 # The same twice, but for the times.
-run "$SFUMATO" verify "$scene" -s 24x20 --repeats 0 --json
+run "$SFUMATO" verify "$scene" -s 24x20 --repeats 0 --methods thick --json
 sed '/"seconds"/d' out >first
-run "$SFUMATO" verify "$scene" -s 24x20 --repeats 0 --json --threads 1
+run "$SFUMATO" verify "$scene" -s 24x20 --repeats 0 --methods thick --json --threads 1
 sed '/"seconds"/d' out >second
 cmp -s first second || fail "two runs differ in more than time"
 
