@@ -33,6 +33,7 @@ void main()
     for (uint i = 0u; i < 4u; i++)
         cosine = min(cosine, dot(axis, normalize(light_ray_way(view, vec2((i & 1u) != 0u ? high.x : low.x, (i & 2u) != 0u ? high.y : low.y)))));
     float sine = min(1.05 * sqrt(max(1.0 - cosine * cosine, 0.0)) + 1e-4, 1.0);
+    bool all_around = cosine <= 0.0; // more than a half space
     cosine = sqrt(1.0 - sine * sine);
     vec2 middle = 0.5 * (light_ray_start(view, low).xy + light_ray_start(view, high).xy);
     vec2 reach = 0.5 * abs(light_ray_start(view, high).xy - light_ray_start(view, low).xy);
@@ -49,7 +50,7 @@ void main()
             // cos(a + b), for the sphere seen under the half angle b.
             float sine_b = radius / max(distance, 1e-20), cosine_b = sqrt(max(1.0 - sine_b * sine_b, 0.0));
             float limit = cosine * cosine_b - sine * sine_b;
-            bool within = distance <= radius || dot(axis, q) >= limit * distance;
+            bool within = all_around || distance <= radius || dot(axis, q) >= limit * distance;
             bool touches = index < live && particles[safe].extinction > 0.0 && (beam ? all(lessThanEqual(abs(q.xy - middle), reach + radius)) : within);
             uvec4 ballot = subgroupBallot(touches);
             uint place = at + subgroupBallotExclusiveBitCount(ballot);
@@ -58,7 +59,7 @@ void main()
             at += subgroupBallotBitCount(ballot);
         }
     }
-    // Padded with a particle out of reach: thick/light_map.comp takes none beyond the length, so any number will do.
+    // Not padded: thick/light_map.comp takes none beyond the length.
     if (gl_SubgroupInvocationID == 0u)
         lengths[slot] = at > push.light_list ? SF_THICK_ALL : at;
 }

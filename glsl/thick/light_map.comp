@@ -117,7 +117,7 @@ void main()
     float near = SF_DEPTH_FAR, far = -SF_DEPTH_FAR, whole = 0.0;
     for (uint i = 0u; i < touching.count; i += TURN) {
         read(i, light_at);
-        for (uint k = 0u; k < TURN; k++) {
+        [[unroll]] for (uint k = 0u; k < TURN; k++) {
             float depth;
             vec2 chord = take(k, start, way, least, depth);
             near = min(near, depth > 0.0 ? chord.x : SF_DEPTH_FAR);
@@ -136,7 +136,7 @@ void main()
         vec4 s0 = vec4(0.0), s1 = s0, s2 = s0, s3 = s0;
         for (uint i = 0u; i < touching.count; i += TURN) {
             read(i, light_at);
-            for (uint k = 0u; k < TURN; k++) {
+            [[unroll]] for (uint k = 0u; k < TURN; k++) {
                 float depth;
                 vec2 chord = take(k, start, way, least, depth);
                 // clamp(x, 0, 1) is two instructions on a software device, any other clamp is six.

@@ -37,6 +37,6 @@ void main()
         }
     }
     uint end = range.x + range.y;
-    if (at + gl_SubgroupInvocationID < end)
-        list[at + gl_SubgroupInvocationID] = push.capacity;
+    for (uint i = at + gl_SubgroupInvocationID; i < end; i += lanes)
+        list[i] = push.capacity;
 }

@@ -65,7 +65,7 @@ void fathom(thick_list touching, thick_ray ray)
     seen.g0 = seen.g1 = vec4(0.0);
     for (uint i = 0u; i < touching.count; i += TURN) {
         thick_turn turn = thick_read(touching, i, DETAIL != 0u, false);
-        for (uint k = 0u; k < TURN; k++) {
+        [[unroll]] for (uint k = 0u; k < TURN; k++) {
             float depth;
             thick_chord chord = thick_take(turn, k, ray, DETAIL != 0u, depth);
             float inverse = 1.0 / max(chord.to - chord.from, 1e-9), before = chord.from * inverse;
@@ -104,7 +104,7 @@ void survey(thick_list touching, thick_ray ray)
     seen.whole = 0.0;
     for (uint i = 0u; i < touching.count; i += TURN) {
         thick_turn turn = thick_read(touching, i, DETAIL != 0u, false);
-        for (uint k = 0u; k < TURN; k++) {
+        [[unroll]] for (uint k = 0u; k < TURN; k++) {
             float depth;
             thick_chord chord = thick_take(turn, k, ray, DETAIL != 0u, depth);
             seen.near = min(seen.near, depth > 0.0 ? chord.from : SF_DEPTH_FAR);
@@ -131,7 +131,7 @@ vec3 tint_seen(thick_list touching, thick_ray ray)
     vec4 sum = vec4(0.0, 0.0, 0.0, 1e-20);
     for (uint i = 0u; i < touching.count; i += TURN) {
         thick_turn turn = thick_read(touching, i, DETAIL != 0u, true);
-        for (uint k = 0u; k < TURN; k++) {
+        [[unroll]] for (uint k = 0u; k < TURN; k++) {
             float depth;
             thick_chord chord = thick_take(turn, k, ray, DETAIL != 0u, depth);
             float through = exp(-depth_at(chord.from)) + exp(-depth_at(chord.to));

@@ -2,7 +2,8 @@
 //   constant TURN: 8, or 4 where subgroups are smaller; Spheres { sf_thick_sphere spheres[]; }, List { uint list[]; }, sampler2D atlas, push
 //
 // A list is walked by a whole subgroup together, TURN spheres a turn: each lane reads one of them and hands it to all others. So every lane must be
-// there: no early return, no loop that some lanes leave. (A software device reads storage lane by lane; and a GPU reads memory once.)
+// there: no early return, no loop that some lanes leave. (A software device reads storage lane by lane; and a GPU reads memory once.) The loops over a
+// turn are unrolled: lavapipe ends an invocation's loops after 65,535 turns in all.
 #ifndef SF_THICK_SPHERES_GLSL
 #define SF_THICK_SPHERES_GLSL
 #include "thick/kept.glsl"

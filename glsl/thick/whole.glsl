@@ -68,7 +68,7 @@ void square(uvec2 range, ivec2 corner, bool cut)
         for (uint i = 0u; i < count; i += TURN) {
             thick_turn turn = thick_read(touching, i, DETAIL != 0u, false);
             float matter = way == 0u ? 2.0 * turn.ball.w * turn.extinction : turn.extinction;
-            for (uint k = 0u; k < TURN; k++) {
+            [[unroll]] for (uint k = 0u; k < TURN; k++) {
                 vec4 ball = subgroupShuffle(turn.ball, k), detail = vec4(0.0);
                 float here = subgroupShuffle(matter, k);
                 if (DETAIL != 0u)
