@@ -59,16 +59,6 @@ uint64_t sf_hash_bytes(const void *data, size_t size, uint64_t seed)
     return hash ^ hash >> 32;
 }
 
-/* One step of PCG's generator and its output function RXS-M-XS 32 (O'Neill 2014), as a hash: Jarzynski and Olano, "Hash
- * Functions for GPU Rendering", JCGT 9(3), 2020. A bijection of the 32-bit words. */
-uint32_t sf_hash_u32(uint32_t x)
-{
-    uint32_t state = x * 747796405u + 2891336453u;
-    uint32_t word = (state >> ((state >> 28u) + 4u) ^ state) * 277803737u;
-
-    return word >> 22u ^ word;
-}
-
 uint32_t sf_random_u32(uint32_t seed, uint32_t id, uint32_t purpose)
 {
     /* The id innermost: else two purposes' (or seeds') sequences would be one sequence, shifted. */
