@@ -88,7 +88,8 @@ static bool write_rows(png_structp png, png_infop info, const struct sf_png_fram
     png_set_IHDR(png, info, frame->width, frame->height, (int)frame->bits,
                  frame->channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    png_set_sRGB_gAMA_and_cHRM(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
+    if (!frame->numbers)
+        png_set_sRGB_gAMA_and_cHRM(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
     png_write_info(png, info);
     if (frame->bits == 16 && little_endian())
         png_set_swap(png);
@@ -203,7 +204,7 @@ static enum sf_status convert(const struct session *session, double gamma, const
     return SF_OK;
 }
 
-enum sf_status sf_png_decode(const void *data, size_t size, const char *name, struct sf_image *image,
+static enum sf_status decode(const void *data, size_t size, const char *name, bool numbers, struct sf_image *image,
                              const struct sf_log *log)
 {
     struct session session = {.log = log, .data = data, .left = size};
@@ -219,9 +220,21 @@ enum sf_status sf_png_decode(const void *data, size_t size, const char *name, st
         status = sf_fail(log, SF_ERROR_IO, "cannot read '%s': not a sound PNG file: %s", name, session.message);
     png_destroy_read_struct(&png, &info, NULL);
     if (status == SF_OK)
-        status = convert(&session, gamma, name, image);
+        status = convert(&session, numbers ? 1.0 : gamma, name, image);
     free(session.rows);
     if (status != SF_OK)
         sf_image_finish(image);
     return status;
+}
+
+enum sf_status sf_png_decode(const void *data, size_t size, const char *name, struct sf_image *image,
+                             const struct sf_log *log)
+{
+    return decode(data, size, name, false, image, log);
+}
+
+enum sf_status sf_png_decode_numbers(const void *data, size_t size, const char *name, struct sf_image *image,
+                                     const struct sf_log *log)
+{
+    return decode(data, size, name, true, image, log);
 }
