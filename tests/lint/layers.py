@@ -9,6 +9,7 @@ ALLOWED = {
     "base": set(),
     "params": {"base"},
     "output": {"base"},
+    "texture": {"base", "output"},
     "scene": {"base", "params", "output"},
     "graph": {"base"},
     "gpu": {"base", "graph"},

@@ -441,6 +441,81 @@ enum sf_status sf_frame_write_inspected_exr(const struct sf_frame *frame, const 
                                             const struct sf_exr_options *options, const struct sf_log *log);
 enum sf_status sf_frame_write_inspected_png(const struct sf_frame *frame, const char *path, const struct sf_log *log);
 
+/* ---- smoke textures ---- */
+
+/* An atlas of smoke for particles: tiles side by side, each with colour, alpha, normal and height. */
+struct sf_texture_options {
+    /* "fbm", "turbulence", "cellular": noise weighted by the distance to the tile's middle; "dispersed": clones of one
+     * puff scattered in a ball. */
+    const char *kind;
+    uint32_t tiles_x, tiles_y; /* 1..64 each */
+    uint32_t width, height;    /* px of one tile: 8..8192 each, and at most 32768 each, 2^26 in all, of the whole */
+    uint32_t seed;
+    uint32_t octaves; /* 1..10 */
+    float lacunarity; /* 1.2..4: frequency of an octave to that of the one before */
+    float roughness;  /* 0..1: amplitude likewise */
+    float scale;      /* 0.5..64: features of the first octave across the puff */
+    float ragged;     /* 0..2: how far the noise moves the outline; 0: a ball */
+    float softness;   /* 0.02..2: how slowly the density grows from the outline inwards */
+    float density;    /* 0.1..100: optical depth through the middle */
+    float mottle;     /* 0..1: how much darker the colour is where the noise is low; 0: white */
+    uint32_t clones;  /* 1..2000, of "dispersed" */
+    /* Every `loop` tiles are one smoke at so many times of a cycle; divides the number of tiles; 1: each tile is another
+     * smoke. */
+    uint32_t loop;
+    uint32_t changes; /* 1..32: how often the first octave becomes another one in the cycle */
+    bool tileable;    /* a layer without end that repeats at the tile's borders, in place of a puff */
+    uint32_t threads; /* 0: one a core */
+};
+/* What the program makes when it is told nothing. */
+void sf_texture_options_init(struct sf_texture_options *options);
+
+struct sf_texture;
+/* Needs no device. The same options give the same bits with any number of threads. `progress` (may be NULL) gets rows of
+ * pixels; false stops with SF_ERROR_INTERRUPTED. SF_ERROR_USAGE names the option that is out of its range. */
+enum sf_status sf_texture_create(const struct sf_texture_options *options, sf_progress_fn progress, void *user,
+                                 const struct sf_log *log, struct sf_texture **texture);
+
+enum sf_texture_channels {
+    SF_TEXTURE_COLOR = 1,  /* R, G, B: linear Rec. 709 */
+    SF_TEXTURE_ALPHA = 2,  /* A */
+    SF_TEXTURE_NORMAL = 4, /* N.x, N.y, N.z: to the right, up, to the viewer; unit */
+    SF_TEXTURE_HEIGHT = 8, /* height: 0..1 */
+    SF_TEXTURE_ALL = 15,
+};
+/* Reads an atlas of tiles_x by tiles_y tiles, 0 by 0 when the file itself says (EXR files of sf_texture_write_exr do).
+ * EXR: channels as above, colour premultiplied. PNG: colour and alpha, not premultiplied; of NAME.color.png the normals
+ * and heights are in NAME.normal.png, if it is there. Channels that are not there are white, opaque, flat and 0, but
+ * normals are made from heights; SF_ERROR_IO when one of `needs` is among them. SF_ERROR_IO as well: missing, neither EXR
+ * nor PNG, corrupt, too large, not to be divided into the tiles, a number that is none or out of its range. */
+enum sf_status sf_texture_load(const char *path, uint32_t tiles_x, uint32_t tiles_y, uint32_t needs,
+                               const struct sf_log *log, struct sf_texture **texture);
+void sf_texture_destroy(struct sf_texture **texture);
+
+struct sf_texture_info {
+    uint32_t width, height; /* px of the whole */
+    uint32_t tiles_x, tiles_y, loop;
+    bool tileable;
+    uint32_t channels; /* that were made or read: enum sf_texture_channels bits */
+    /* [height][width][4], the texture's, row 0 on top: R, G, B (not premultiplied), A; normal x, y, z, height. A height of
+     * 1 is half a tile's shorter side above the tile's plane. */
+    const float *color, *shape;
+};
+void sf_texture_describe(const struct sf_texture *texture, struct sf_texture_info *info);
+/* The light that is drawn into the colour: luminance as a linear function of the normal, by least squares weighted with
+ * alpha. *slope: the length of that function's gradient over the mean luminance (0: unlit; a white ball lit from the
+ * viewer: 1.5). *correlation: 0..1, how much of the luminance's variation that explains. */
+void sf_texture_lighting(const struct sf_texture *texture, double *slope, double *correlation);
+
+/* `channels`: enum sf_texture_channels bits. Colour is premultiplied by alpha. Written whole or not at all. */
+enum sf_status sf_texture_write_exr(const struct sf_texture *texture, const char *path, uint32_t channels,
+                                    const struct sf_exr_options *options, const struct sf_log *log);
+/* Colour is sRGB and not premultiplied; the others are numbers without a curve: normals (n + 1) / 2, and height or alpha
+ * alone grey. A picture holds colour and alpha, or normal and height (in its alpha), or one of the four; else
+ * SF_ERROR_USAGE. `bits`: 8 or 16. Written whole or not at all. */
+enum sf_status sf_texture_write_png(const struct sf_texture *texture, const char *path, uint32_t channels,
+                                    unsigned bits, const struct sf_log *log);
+
 /* A frame list such as "1-100x2,150": malloc'ed, in order, without repeats. SF_ERROR_USAGE says where it goes wrong. */
 enum sf_status sf_frames_parse(const char *text, const struct sf_log *log, uint32_t **frames, size_t *count);
 /* "out/a.####.png" or "out/a.%04d.png" with the number put in. SF_ERROR_USAGE when the pattern has no place (or

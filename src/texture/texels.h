@@ -1,0 +1,19 @@
+/* A texture's planes as a device takes them: for methods that draw with an atlas. */
+#ifndef SF_TEXTURE_TEXELS_H
+#define SF_TEXTURE_TEXELS_H
+
+#include <stdint.h>
+
+struct sf_texture;
+
+enum sf_texels_plane {
+    SF_TEXELS_COLOR, /* linear R, G, B premultiplied by A, so that filtering needs no care at borders; A */
+    SF_TEXELS_SHAPE, /* normal x, y, z; height */
+};
+
+/* [height][width][4] of the whole atlas, row 0 on top. In 8 bits (RGBA8_UNORM) normals are (n + 1) / 2, and values above 1
+ * are 1; in 16-bit floats (RGBA16F) all is as it is. */
+void sf_texels_rgba8(const struct sf_texture *texture, enum sf_texels_plane plane, uint8_t *texels);
+void sf_texels_rgba16f(const struct sf_texture *texture, enum sf_texels_plane plane, uint16_t *texels);
+
+#endif
