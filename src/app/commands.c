@@ -3,6 +3,7 @@
 #include "bench.h"
 #include "capture.h"
 #include "verify/verify.h"
+#include "texture.h"
 #if defined(SF_VIEWER)
 #include "view/view.h"
 #else
@@ -18,6 +19,9 @@ static const char *const types[] = {"half", "float", NULL};
 static const char *const compressions[] = {"none", "rle", "zips", "zip", "piz", "pxr24", "b44", NULL};
 static const char *const tones[] = {"linear", "reinhard", "aces", "neutral", NULL};
 static const char *const graph_formats[] = {"text", "dot", "json", NULL};
+static const char *const texture_kinds[] = {"fbm", "turbulence", "cellular", "dispersed", NULL};
+static const char *const texture_channels[] = {"all", "color", "alpha", "normal", "height", NULL};
+static const char *const texture_bits[] = {"8", "16", NULL};
 static const char *const params_formats[] = {"text", "json-schema", "markdown", NULL};
 
 static const struct sf_option common_options[] = {
@@ -140,6 +144,52 @@ static const struct sf_option verify_options[] = {
      .doc = "a parameter over the scenes' (see sfumato params); repeatable"},
     {.name = NULL}};
 
+/* Defaults and ranges are those of sf_texture_options_init and of struct sf_texture_options. */
+static const struct sf_option texture_options[] = {
+    {"kind", 0, SF_OPTION_WORD, FIELD(kind), .value = "KIND", .initial = "dispersed", .doc = "of smoke",
+     .words = texture_kinds},
+    {"tiles", 0, SF_OPTION_GRID, FIELD(tiles), .value = "NxM", .initial = "2x2", .doc = "tiles across and down",
+     .min = 1, .max = 64},
+    {"size", 's', SF_OPTION_SIZE, FIELD(size), .value = "WxH", .initial = "256x256", .doc = "pixels of a tile",
+     .min = 8, .max = 8192},
+    {"seed", 0, SF_OPTION_NUMBER, FIELD(seed), .value = "N", .initial = "1", .doc = "another one, other smoke",
+     .min = 0, .max = UINT32_MAX},
+    {"octaves", 0, SF_OPTION_NUMBER, FIELD(octaves), .value = "N", .initial = "5", .doc = "of noise, 1 to 10", .min = 1,
+     .max = 10},
+    {"lacunarity", 0, SF_OPTION_REAL, FIELD(lacunarity), .value = "X", .initial = "2",
+     .doc = "frequency of an octave to that of the one before", .min = 1.2, .max = 4},
+    {"roughness", 0, SF_OPTION_REAL, FIELD(roughness), .value = "X", .initial = "0.5",
+     .doc = "amplitude likewise, 0 to 1", .min = 0, .max = 1},
+    {"scale", 0, SF_OPTION_REAL, FIELD(scale), .value = "X", .initial = "4",
+     .doc = "features of the first octave across the puff", .min = 0.5, .max = 64},
+    {"ragged", 0, SF_OPTION_REAL, FIELD(ragged), .value = "X", .initial = "0.8",
+     .doc = "how far noise moves the outline, 0 (a ball) to 2", .min = 0, .max = 2},
+    {"softness", 0, SF_OPTION_REAL, FIELD(softness), .value = "X", .initial = "0.8",
+     .doc = "how slowly it becomes dense from the outline inwards, to 2", .min = 0.02, .max = 2},
+    {"density", 0, SF_OPTION_REAL, FIELD(density), .value = "X", .initial = "10",
+     .doc = "optical depth through the middle", .min = 0.1, .max = 100},
+    {"mottle", 0, SF_OPTION_REAL, FIELD(mottle), .value = "X", .initial = "0.2",
+     .doc = "how dark the colour is in the hollows, 0 (white) to 1", .min = 0, .max = 1},
+    {"clones", 0, SF_OPTION_NUMBER, FIELD(clones), .value = "N", .initial = "80", .doc = "of the puff, when dispersed",
+     .min = 1, .max = 2000},
+    {"loop", 0, SF_OPTION_NUMBER, FIELD(loop), .value = "K", .initial = "1",
+     .doc = "each K tiles are one smoke at K times of a cycle", .min = 1, .max = 4096},
+    {"changes", 0, SF_OPTION_NUMBER, FIELD(changes), .value = "N", .initial = "3",
+     .doc = "how often it becomes another one in a cycle", .min = 1, .max = 32},
+    {"tileable", 0, SF_OPTION_FLAG, FIELD(tileable), .doc = "a layer that repeats at the tiles' borders, not a puff"},
+    {"channels", 0, SF_OPTION_WORD, FIELD(channels), .value = "WHICH", .initial = "all", .doc = "of each file",
+     .words = texture_channels},
+    {"bits", 0, SF_OPTION_WORD, FIELD(bits), .value = "N", .initial = "8", .doc = "of numbers in PNG files",
+     .words = texture_bits},
+    {"type", 0, SF_OPTION_WORD, FIELD(type), .value = "TYPE", .initial = "half", .doc = "numbers in EXR files",
+     .words = types},
+    {"compression", 0, SF_OPTION_WORD, FIELD(compression), .value = "NAME", .initial = "zip", .doc = "of EXR files",
+     .words = compressions},
+    {"overwrite", 0, SF_OPTION_FLAG, FIELD(overwrite), .doc = "replace files that exist"},
+    {"threads", 0, SF_OPTION_NUMBER, FIELD(threads), .value = "N", .doc = "that make it (default: one a core)",
+     .min = 1, .max = 64},
+    {.name = NULL}};
+
 static const struct sf_option devices_options[] = {{"json", 0, SF_OPTION_FLAG, FIELD(json), .doc = "as JSON"},
                                                    {.name = NULL}};
 
@@ -158,6 +208,7 @@ static const struct sf_option *const view_tables[] = {view_options, scene_option
 static const struct sf_option *const bench_tables[] = {bench_options,  size_options,   scene_options,
                                                        device_options, common_options, NULL};
 static const struct sf_option *const verify_tables[] = {verify_options, device_options, common_options, NULL};
+static const struct sf_option *const texture_tables[] = {texture_options, common_options, NULL};
 static const struct sf_option *const devices_tables[] = {devices_options, common_options, NULL};
 static const struct sf_option *const graph_tables[] = {graph_options, size_options, scene_options, common_options,
                                                        NULL};
@@ -171,6 +222,9 @@ static const char *const bench_notes[] = {
     "  sfumato bench scenes/plume.json --set thick.steps=24 --compare before.json", NULL};
 static const char *const verify_notes[] = {"Without SCENE: those of scenes/truth, here or beside the program.",
                                            "  sfumato verify scenes/truth/*.json --set thick.steps=32 --goals", NULL};
+static const char *const texture_notes[] = {
+    "Names end in .exr or .png. With all channels a.png becomes a.color.png and a.normal.png (heights in its alpha).",
+    "  sfumato texture out/puffs.exr out/puffs.png --tiles 4x4 -s 128x128 --loop 16", NULL};
 static const char *const graph_notes[] = {"  sfumato graph scenes/plume.json --format dot | dot -Tsvg > graph.svg",
                                           NULL};
 
@@ -194,6 +248,8 @@ const struct sf_command sf_commands[] = {
      sf_bench_run},
     {"verify", "[SCENE...]", "Says how wrong each method is, and how fast.", verify_notes, verify_tables, 0, SIZE_MAX,
      sf_verify_run},
+    {"texture", "OUTPUT...", "Makes atlases of smoke for particles: colour, alpha, normals, heights.", texture_notes,
+     texture_tables, 1, SF_TEXTURE_OUTPUTS_MAX, sf_texture_run},
     {"devices", "", "Lists the Vulkan devices of this machine.", NULL, devices_tables, 0, 0, sf_devices_run},
     {"graph", "SCENE", "Prints the compiled render graph of a scene's frame; needs no device.", graph_notes,
      graph_tables, 1, 1, sf_graph_run},

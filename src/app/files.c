@@ -44,6 +44,17 @@ enum sf_status sf_folder_check(const char *path)
     return status;
 }
 
+enum sf_status sf_new_file_check(const char *path, bool overwrite)
+{
+    enum sf_status status = sf_folder_check(path);
+    struct stat info;
+
+    /* A dangling link is there as well: the rename would replace it. */
+    if (!status && !overwrite && lstat(path, &info) == 0)
+        status = sf_console_fail(SF_ERROR_IO, "%s: exists (--overwrite replaces it)", path);
+    return status;
+}
+
 static bool write_all(int fd, const char *data, size_t size)
 {
     while (size > 0) {

@@ -9,6 +9,8 @@
 /* Is there a folder for `path` that can be written into, and is `path` not a folder itself? SF_ERROR_IO, with the
  * remedy. */
 enum sf_status sf_folder_check(const char *path);
+/* Besides that, does no file of that name exist, unless it may be replaced? */
+enum sf_status sf_new_file_check(const char *path, bool overwrite);
 /* The final name holds all of the text or what it held before; errno says why it could not be written. */
 bool sf_file_replace(const char *path, const char *text, size_t length);
 /* The same with an error on the console. "-" is standard output. */

@@ -130,15 +130,17 @@ static enum sf_status parse_real(const struct sf_option *row, const char *shown,
 static enum sf_status parse_size(const struct sf_option *row, const char *shown, const char *text,
                                  struct sf_argument_size *size)
 {
+    bool grid = row->kind == SF_OPTION_GRID;
     uint64_t width, height;
     char *end;
 
     if (!parse_unsigned(text, &end, &width) || (*end != 'x' && *end != 'X') ||
         !parse_unsigned(end + 1, &end, &height) || *end)
-        return sf_console_fail(SF_ERROR_USAGE, "%s %s: must be WIDTHxHEIGHT in pixels, such as 800x800", shown, text);
+        return sf_console_fail(SF_ERROR_USAGE, "%s %s: must be %s", shown, text,
+                               grid ? "ACROSSxDOWN, such as 2x2" : "WIDTHxHEIGHT in pixels, such as 800x800");
     if ((double)width < row->min || (double)width > row->max || (double)height < row->min || (double)height > row->max)
-        return sf_console_fail(SF_ERROR_USAGE, "%s %s: each side must be %.0f to %.0f pixels", shown, text, row->min,
-                               row->max);
+        return sf_console_fail(SF_ERROR_USAGE, "%s %s: each side must be %.0f to %.0f%s", shown, text, row->min,
+                               row->max, grid ? "" : " pixels");
     *size = (struct sf_argument_size){.width = (uint32_t)width, .height = (uint32_t)height};
     return SF_OK;
 }
@@ -193,6 +195,7 @@ static enum sf_status set_value(const struct sf_option *row, const char *shown, 
     case SF_OPTION_REAL:
         return parse_real(row, shown, text, field);
     case SF_OPTION_SIZE:
+    case SF_OPTION_GRID:
         return parse_size(row, shown, text, field);
     }
     return SF_ERROR_INTERNAL;

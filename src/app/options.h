@@ -61,6 +61,12 @@ struct sf_arguments {
     struct sf_argument_real goal; /* ms */
     uint32_t first_frame, exit_after;
     const char *folder, *shaders; /* for pictures; of GLSL sources */
+    /* texture */
+    const char *kind, *channels, *bits;
+    struct sf_argument_size tiles; /* how many, across and down */
+    uint32_t seed, octaves, clones, loop, changes;
+    struct sf_argument_real lacunarity, roughness, scale, ragged, softness, density, mottle;
+    bool tileable;
     /* devices, graph, params */
     bool json;
     const char *format;
@@ -74,7 +80,8 @@ enum sf_option_kind {
     SF_OPTION_WORD,   /* const char *, one of `words` */
     SF_OPTION_NUMBER, /* uint32_t in min..max */
     SF_OPTION_REAL,   /* struct sf_argument_real in min..max */
-    SF_OPTION_SIZE,   /* struct sf_argument_size, each side in min..max */
+    SF_OPTION_SIZE,   /* struct sf_argument_size, each side in min..max pixels */
+    SF_OPTION_GRID,   /* the same, but no pixels */
 };
 
 struct sf_option {
