@@ -329,7 +329,7 @@ void sf_body_look(const struct sf_body *body, uint32_t row, uint32_t *list, stru
             walk_clones(body, list, count, &line);
         else
             walk_noise(body, &line);
-        float alpha = 1 - line.passes, shade = alpha > 0 ? line.seen_shade / alpha : 1;
+        float alpha = 1 - line.passes, shade = alpha > 0 ? fminf(line.seen_shade / alpha, 1) : 1;
 
         pixels[column] =
             (struct sf_body_pixel){.alpha = alpha, .height = line.height, .shade = 1 - body->mottle * (1 - shade)};
