@@ -174,6 +174,10 @@ struct sf_renderer_options {
     /* The picture stays on the device for sf_window_show; color, depth and smoke do not come back, all else does. */
     bool shown;
     bool returned; /* with `shown`: color and depth (and what `aovs` asks for) come back all the same */
+    /* A method that betters its picture step by step ("reference") gives every one of the steps: sf_renderer_render makes
+     * one, and goes on where the last call left the picture unless anything is different now. Else each
+     * sf_renderer_render begins anew (or where sf_renderer_refine ended) and makes all of them. */
+    bool progressive;
 };
 /* The scene and device must outlive it. */
 enum sf_status sf_renderer_create(struct sf_device *device, const struct sf_scene *scene,
@@ -198,12 +202,17 @@ void sf_renderer_set_view(struct sf_renderer *renderer, const struct sf_camera_v
  * stops with SF_ERROR_INTERRUPTED. */
 typedef bool (*sf_progress_fn)(void *user, uint64_t done, uint64_t total);
 enum sf_status sf_renderer_seek(struct sf_renderer *renderer, uint32_t frame, sf_progress_fn progress, void *user);
-/* Queues simulation up to and the picture of frame number `frame` (time frame/fps) and returns; *ticket names it. */
+/* All but the last of the steps in which the method makes the picture of frame `frame` ("reference"; others make it in
+ * one), so that a host can show progress, as above; sf_renderer_render then makes the last one. */
+enum sf_status sf_renderer_refine(struct sf_renderer *renderer, uint32_t frame, sf_progress_fn progress, void *user);
+/* Queues simulation up to and the picture of frame number `frame` (time frame/fps) and returns; *ticket names it. Where
+ * the picture takes many steps, it waits for all but the last two. */
 enum sf_status sf_renderer_render(struct sf_renderer *renderer, uint32_t frame, uint64_t *ticket);
 
 struct sf_frame {
     uint32_t frame, width, height;
     double time;           /* s */
+    float progress;        /* 0..1: how far the method has come with the picture; below 1 only with `progressive` */
     const uint16_t *color; /* [height][width][4] linear RGBA half, premultiplied, row 0 on top; NULL when float_color */
     const float *color_float;
     const float *depth;        /* [height][width] m of view depth; SF_NO_DEPTH where nothing is */
@@ -222,7 +231,8 @@ struct sf_frame {
 };
 #define SF_NO_DEPTH 1.0e6f
 
-/* Waits for the frame. Its pointers hold until frames_kept further frames have been queued. */
+/* Waits for the frame. Its pointers hold until frames_kept further frames have been queued. SF_ERROR_DEVICE when the
+ * method found that the device cannot make the picture right. */
 enum sf_status sf_renderer_wait(struct sf_renderer *renderer, uint64_t ticket, struct sf_frame *frame);
 
 struct sf_pass_timing {
