@@ -66,11 +66,11 @@ void main()
         float middle = dot(centre - frame.eye.xyz, ray) / squared; // its rounding moves the point along the ray, which is of second order
         float half_chord = sqrt(max(room_of(centre, p.radius, middle, x, y, z), 0.0) / squared);
         float from = max(middle - half_chord, begin), to = min(middle + half_chord, end);
-        bool met = half_chord > 0.0 && to > from && p.extinction > 0.0;
-        bool uncut = middle - half_chord >= begin && middle + half_chord <= end;
+        float within = min(half_chord, middle - begin) + min(half_chord, end - middle); // to - from would lose a short chord
+        bool met = half_chord > 0.0 && within > 0.0 && p.extinction > 0.0;
         near = met ? min(near, from) : near;
         far = met ? max(far, to) : far;
-        depth = twofold_add(depth, vec2(met ? p.extinction * sqrt(squared) * (uncut ? 2.0 * half_chord : to - from) : 0.0, 0.0));
+        depth = twofold_add(depth, vec2(met ? p.extinction * sqrt(squared) * within : 0.0, 0.0));
     }
     imageStore(depths, ivec2(pixel), depth.x > 0.0 ? vec4(near, far, depth.x, exp(-depth.x)) : vec4(SF_DEPTH_FAR, SF_DEPTH_FAR, 0.0, 1.0));
 }

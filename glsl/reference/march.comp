@@ -41,7 +41,7 @@ layout(push_constant) uniform Push { sf_reference_push push; };
 #include "reference/mesh.glsl"
 #include "reference/view.glsl"
 
-const uint KNOTS = SF_REFERENCE_KNOTS, ROW = SF_REFERENCE_ROW;
+const uint KNOTS = SF_REFERENCE_KNOTS, ROW = SF_REFERENCE_ROW, UNROLL = SF_REFERENCE_UNROLL;
 const float BY_LIGHT = 0.75; // of the measure; the rest is by the way, so that no cell is long
 
 // The ray, which all functions are about.
@@ -49,19 +49,28 @@ vec3 ray;
 float ray_length, near, far, whole; // whole: 1 - T
 uvec2 list;
 
+// Behind the list's end: its last.
 uint list_entry(uvec2 of, uint i)
 {
-    return of.x == SF_REFERENCE_ALL ? i : entries[of.x + i];
+    uint inside = min(i, of.y - 1u);
+    return of.x == SF_REFERENCE_ALL ? inside : entries[of.x + inside];
 }
 
-// Where a sphere's matter begins and ends on near..far (the end not before the beginning), and its optical depth for each metre of view depth.
-vec3 sphere_part(uint index)
+// 0 behind the list's end.
+float list_extinction(uvec2 of, uint i, uint index)
+{
+    return i < of.y ? spheres[index].matter.x : 0.0;
+}
+
+// Where the matter of a sphere begins and ends on near..far (the end not before the beginning), and its optical depth for each metre of view
+// depth.
+vec3 sphere_part(uint index, float extinction)
 {
     vec4 ball = spheres[index].ball;
     // A little more than the sphere, so that none is missed whose chord reference/depths.comp, which is more exact, has found.
     vec2 chord = sphere_chord(ray, ball.xyz, ball.w * 1.000002);
     float from = clamp(chord.x - chord.y, near, far);
-    return vec3(from, clamp(chord.x + chord.y, from, far), chord.y > 0.0 ? spheres[index].matter.x * ray_length : 0.0);
+    return vec3(from, clamp(chord.x + chord.y, from, far), chord.y > 0.0 ? extinction * ray_length : 0.0);
 }
 
 // 1 - exp(-depth)
@@ -76,10 +85,13 @@ void measure(float t[KNOTS + 1u], out float measured[KNOTS + 1u])
     float depth[KNOTS + 1u];
     [[unroll]] for (uint k = 0u; k <= KNOTS; k++)
         depth[k] = 0.0;
-    for (uint i = 0u; i < list.y; i++) {
-        vec3 part = sphere_part(list_entry(list, i));
-        [[unroll]] for (uint k = 1u; k < KNOTS; k++)
-            depth[k] += part.z * (clamp(t[k], part.x, part.y) - part.x);
+    for (uint i = 0u; i < list.y; i += UNROLL) {
+        [[unroll]] for (uint n = 0u; n < UNROLL; n++) {
+            uint index = list_entry(list, i + n);
+            vec3 part = sphere_part(index, list_extinction(list, i + n, index));
+            [[unroll]] for (uint k = 1u; k < KNOTS; k++)
+                depth[k] += part.z * (clamp(t[k], part.x, part.y) - part.x);
+        }
     }
     measured[0] = 0.0;
     [[unroll]] for (uint k = 1u; k < KNOTS; k++)
@@ -125,15 +137,17 @@ void smoke_between(uint light, uvec2 of, float t[ROW], out float depth[ROW])
     vec3 seen = vec3(dot(ray, x), dot(ray, y), dot(ray, z)), at[ROW];
     [[unroll]] for (uint j = 0u; j < ROW; j++)
         at[j] = t[j] * seen;
-    for (uint i = 0u; i < (directional ? of.y : 0u); i++) {
-        uint index = list_entry(of, i);
-        vec4 ball = spheres[index].ball;
-        float extinction = spheres[index].matter.x, squared = ball.w * ball.w;
-        vec3 c = vec3(dot(ball.xyz, x), dot(ball.xyz, y), dot(ball.xyz, z));
-        [[unroll]] for (uint j = 0u; j < ROW; j++) {
-            vec3 way = c - at[j];
-            float chord = sqrt(max(squared - way.x * way.x - way.y * way.y, 0.0));
-            depth[j] += extinction * (max(way.z + chord, 0.0) - max(way.z - chord, 0.0));
+    for (uint i = 0u; i < (directional ? of.y : 0u); i += UNROLL) {
+        [[unroll]] for (uint n = 0u; n < UNROLL; n++) {
+            uint index = list_entry(of, i + n);
+            vec4 ball = spheres[index].ball;
+            float extinction = list_extinction(of, i + n, index), squared = ball.w * ball.w;
+            vec3 c = vec3(dot(ball.xyz, x), dot(ball.xyz, y), dot(ball.xyz, z));
+            [[unroll]] for (uint j = 0u; j < ROW; j++) {
+                vec3 way = c - at[j];
+                float chord = sqrt(max(squared - way.x * way.x - way.y * way.y, 0.0));
+                depth[j] += extinction * (max(way.z + chord, 0.0) - max(way.z - chord, 0.0));
+            }
         }
     }
 
@@ -145,16 +159,18 @@ void smoke_between(uint light, uvec2 of, float t[ROW], out float depth[ROW])
         reach[j] = length(to_point[j]);
         to_point[j] /= max(reach[j], 1e-12);
     }
-    for (uint i = 0u; i < (directional ? 0u : of.y); i++) {
-        uint index = list_entry(of, i);
-        vec4 ball = spheres[index].ball;
-        float extinction = spheres[index].matter.x, squared = ball.w * ball.w;
-        vec3 c = ball.xyz - lamp;
-        [[unroll]] for (uint j = 0u; j < ROW; j++) {
-            float along = dot(c, to_point[j]);
-            vec3 miss = c - along * to_point[j];
-            float chord = sqrt(max(squared - dot(miss, miss), 0.0));
-            depth[j] += extinction * max(min(along + chord, reach[j]) - max(along - chord, 0.0), 0.0);
+    for (uint i = 0u; i < (directional ? 0u : of.y); i += UNROLL) {
+        [[unroll]] for (uint n = 0u; n < UNROLL; n++) {
+            uint index = list_entry(of, i + n);
+            vec4 ball = spheres[index].ball;
+            float extinction = list_extinction(of, i + n, index), squared = ball.w * ball.w;
+            vec3 c = ball.xyz - lamp;
+            [[unroll]] for (uint j = 0u; j < ROW; j++) {
+                float along = dot(c, to_point[j]);
+                vec3 miss = c - along * to_point[j];
+                float chord = sqrt(max(squared - dot(miss, miss), 0.0));
+                depth[j] += extinction * max(min(along + chord, reach[j]) - max(along - chord, 0.0), 0.0);
+            }
         }
     }
 }
@@ -228,19 +244,21 @@ void weigh(float ends[ROW + 1u], out float weight[ROW], out vec3 albedo[ROW])
         depth[k] = 0.0;
         scattering[k] = vec3(0.0);
     }
-    for (uint i = 0u; i < list.y; i++) {
-        uint index = list_entry(list, i);
-        vec3 part = sphere_part(index);
-        vec3 own = spheres[index].matter.yzw;
-        [[unroll]] for (uint k = 0u; k <= ROW; k++) {
-            float added = part.z * (clamp(ends[k], part.x, part.y) - part.x);
-            depth[k] += added;
-            scattering[k] += added * own;
+    for (uint i = 0u; i < list.y; i += UNROLL) {
+        [[unroll]] for (uint n = 0u; n < UNROLL; n++) {
+            uint index = list_entry(list, i + n);
+            vec3 part = sphere_part(index, list_extinction(list, i + n, index));
+            vec3 own = spheres[index].matter.yzw;
+            [[unroll]] for (uint k = 0u; k <= ROW; k++) {
+                float added = part.z * (clamp(ends[k], part.x, part.y) - part.x);
+                depth[k] += added;
+                scattering[k] += added * own;
+            }
         }
     }
     [[unroll]] for (uint j = 0u; j < ROW; j++) {
         float within = depth[j + 1u] - depth[j];
-        weight[j] = within > 0.0 ? exp(-depth[j]) - exp(-depth[j + 1u]) : 0.0;
+        weight[j] = exp(-depth[j]) * opaque(max(within, 0.0));
         albedo[j] = (scattering[j + 1u] - scattering[j]) / max(within, 1e-30);
     }
 }

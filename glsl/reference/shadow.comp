@@ -18,6 +18,8 @@ layout(push_constant) uniform Push { sf_reference_push push; };
 
 const uint THREADS = SF_REFERENCE_TILE * SF_REFERENCE_TILE;
 shared uint touching[THREADS / 32u]; // one bit a particle
+shared vec4 balls[THREADS];          // as the light sees them; w: radius
+shared float extinctions[THREADS];
 
 // The plane at depth 1, or across the light's way, of a texel's corner.
 vec2 across_of(sf_gpu_light_view view, vec2 texel)
@@ -25,13 +27,11 @@ vec2 across_of(sf_gpu_light_view view, vec2 texel)
     return (texel / float(push.shadow_cell) - view.window.zw) / view.window.xy;
 }
 
-bool touches(sf_gpu_light_view view, sf_particle p, vec2 low, vec2 high)
+bool touches(bool perspective, vec4 ball, vec2 low, vec2 high)
 {
-    vec3 c = (view.view * vec4(p.x, p.y, p.z, 1.0)).xyz;
-    bool perspective = view.info.x > 0.5;
-    vec2 x = perspective ? circle_range(c.x, c.z, p.radius, 1e4) : c.x + vec2(-p.radius, p.radius);
-    vec2 y = perspective ? circle_range(c.y, c.z, p.radius, 1e4) : c.y + vec2(-p.radius, p.radius);
-    bool seen = p.extinction > 0.0 && p.radius > 0.0 && (!perspective || c.z + p.radius > 0.0);
+    vec2 x = perspective ? circle_range(ball.x, ball.z, ball.w, 1e4) : ball.x + vec2(-ball.w, ball.w);
+    vec2 y = perspective ? circle_range(ball.y, ball.z, ball.w, 1e4) : ball.y + vec2(-ball.w, ball.w);
+    bool seen = ball.w > 0.0 && (!perspective || ball.z + ball.w > 0.0);
     return seen && x.x <= high.x && x.y >= low.x && y.x <= high.y && y.y >= low.y;
 }
 
@@ -51,20 +51,25 @@ void main()
         if (thread < THREADS / 32u)
             touching[thread] = 0u;
         barrier();
-        if (first + thread < counts.live && touches(view, particles[first + thread], min(a, b), max(a, b)))
-            atomicOr(touching[thread / 32u], 1u << (thread % 32u));
+        if (first + thread < counts.live) {
+            sf_particle p = particles[first + thread];
+            balls[thread] = vec4((view.view * vec4(p.x, p.y, p.z, 1.0)).xyz, p.radius);
+            extinctions[thread] = p.extinction;
+            if (p.extinction > 0.0 && touches(perspective, balls[thread], min(a, b), max(a, b)))
+                atomicOr(touching[thread / 32u], 1u << (thread % 32u));
+        }
         barrier();
         for (uint word = 0u; word < THREADS / 32u; word++) {
             met_here += bitCount(touching[word]);
             for (uint left = touching[word]; left != 0u; left &= left - 1u) {
-                sf_particle p = particles[first + 32u * word + uint(findLSB(left))];
-                vec3 c = (view.view * vec4(p.x, p.y, p.z, 1.0)).xyz;
-                vec2 chord = sphere_chord(ray, perspective ? c : vec3(c.xy - across, c.z), p.radius);
+                uint i = 32u * word + uint(findLSB(left));
+                vec4 ball = balls[i];
+                vec2 chord = sphere_chord(ray, perspective ? ball.xyz : vec3(ball.xy - across, ball.z), ball.w);
                 float from = perspective ? max(chord.x - chord.y, 0.0) : chord.x - chord.y, to = chord.x + chord.y;
                 bool met = chord.y > 0.0 && to > from;
                 near = met ? min(near, from) : near;
                 far = met ? max(far, to) : far;
-                depth += met ? p.extinction * (to - from) : 0.0;
+                depth += met ? extinctions[i] * (to - from) : 0.0;
             }
         }
         barrier();

@@ -7,6 +7,7 @@
 #define SF_REFERENCE_SLICES 16 /* of a tile's depth, for the ways to the lights */
 #define SF_REFERENCE_KNOTS  16 /* pieces of the map from samples to depths */
 #define SF_REFERENCE_ROW    8  /* samples next to each other, which are taken together */
+#define SF_REFERENCE_UNROLL 4  /* entries of a list in one turn of a loop */
 #define SF_REFERENCE_RUN    64 /* invocations that make a list, each of a run of neighbours */
 #define SF_REFERENCE_RAMP   16 /* keys, as SF_RAMP_MAX */
 

@@ -169,8 +169,10 @@ static enum sf_status measure_frame(struct sf_bench *bench, struct sf_renderer *
     struct sf_frame frame;
     uint64_t ticket, begin = sf_now_ns(), end, record;
     uint32_t count;
-    enum sf_status status = sf_renderer_render(renderer, number, &ticket);
+    enum sf_status status = sf_session_refine(renderer, number);
 
+    if (!status)
+        status = sf_renderer_render(renderer, number, &ticket);
     if (!status)
         status = sf_renderer_wait(renderer, ticket, &frame);
     end = sf_now_ns();
@@ -219,7 +221,9 @@ static enum sf_status warm_up(const struct sf_bench *bench, struct sf_renderer *
         struct sf_frame frame;
         uint64_t ticket;
 
-        status = sf_renderer_render(renderer, first + i, &ticket);
+        status = sf_session_refine(renderer, first + i);
+        if (!status)
+            status = sf_renderer_render(renderer, first + i, &ticket);
         if (!status)
             status = sf_renderer_wait(renderer, ticket, &frame);
         if (!status)
@@ -263,6 +267,8 @@ static enum sf_status run_pipelined(struct sf_bench *bench, struct sf_renderer *
         for (size_t i = 0; i < bench->frame_count + IN_FLIGHT && !status; i++) {
             if (i >= IN_FLIGHT && i - IN_FLIGHT < bench->frame_count)
                 status = sf_renderer_wait(renderer, tickets[i % IN_FLIGHT], &frame);
+            if (i < bench->frame_count && !status)
+                status = sf_session_refine(renderer, bench->frames[i]);
             if (i < bench->frame_count && !status)
                 status = sf_renderer_render(renderer, bench->frames[i], &tickets[i % IN_FLIGHT]);
             if (!status)

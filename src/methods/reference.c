@@ -118,8 +118,9 @@ enum sf_status sf_reference_judge(const struct sf_method_frame *frame, const voi
     const struct sf_reference_verdict *verdict = data;
     const struct sf_scene *scene = frame->scene;
     uint64_t rows = rows_of(scene), words = divide_up((uint32_t)scene->sim.capacity, 256) * 9;
-    uint64_t turns = (2 + rows) * verdict->longest_view +
-                     rows * scene->light_count * ((uint64_t)verdict->longest_way + frame->solids);
+    uint64_t view = divide_up(verdict->longest_view, SF_REFERENCE_UNROLL),
+             way = divide_up(verdict->longest_way, SF_REFERENCE_UNROLL);
+    uint64_t turns = (2 + rows) * view + rows * scene->light_count * (way + frame->solids);
 
     if (verdict->over > 0)
         return sf_fail(
@@ -133,7 +134,7 @@ enum sf_status sf_reference_judge(const struct sf_method_frame *frame, const voi
                        "software device "
                        "can add up; set reference.ground_shadow to false, use fewer particles, or a GPU",
                        verdict->longest_shadow);
-    if (frame->tuning->software && turns > TURNS_MAX)
+    if (frame->tuning->software && (turns > TURNS_MAX || verdict->longest_view > TURNS_MAX))
         return sf_fail(
             log, SF_ERROR_DEVICE,
             "reference: %u particles lie behind one tile of the frame, %u on one way to a light: more than a software "
@@ -415,7 +416,7 @@ enum sf_status sf_reference_light(struct sf_method_frame *frame, void *state, co
     sf_reference_update(frame, reference);
     add_resources(frame, reference);
     add_spheres(frame, reference);
-    if (frame->scene->reference.ground_shadow && frame->scene->light_count > 0)
+    if (frame->scene->reference.ground_shadow && frame->scene->light_count > 0 && frame->scene->object_count > 0)
         add_shadow(frame, reference);
     return SF_OK;
 }

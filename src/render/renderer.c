@@ -219,6 +219,11 @@ enum sf_status sf_renderer_render(struct sf_renderer *renderer, uint32_t frame, 
     return SF_OK;
 }
 
+float sf_renderer_progress(const struct sf_renderer *renderer)
+{
+    return renderer->tickets > 0 ? renderer->queued[renderer->tickets % SF_TICKETS].progress : 0;
+}
+
 /* NULL, with a message, when its results are gone or it never was. */
 static const struct sf_queued *find(const struct sf_renderer *renderer, uint64_t ticket)
 {

@@ -144,7 +144,7 @@ static const struct sf_param_group thick_group =
 static const struct sf_param reference_rows[] = {
     {ROW_INT("samples", struct sf_reference_settings, samples, 1024, 8, 65536, "",
              "along each ray through the smoke, in the finished picture: the error falls with their number")},
-    {ROW_INT("batch", struct sf_reference_settings, batch, 32, 8, 256, "",
+    {ROW_INT("batch", struct sf_reference_settings, batch, 16, 8, 256, "",
              "of them at once: between two pictures of the viewer")},
     {ROW_INT("shadow_size", struct sf_reference_settings, shadow_size, 512, 16, 4096, "px",
              "side of the map of the smoke's shadow on the scene, per light"),

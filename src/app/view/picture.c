@@ -29,6 +29,10 @@ static enum sf_status land(struct sf_view *view)
     view->flight_count--;
     memmove(&view->flights[0], &view->flights[1], view->flight_count * sizeof flight);
     status = sf_renderer_wait(view->renderer, flight.ticket, &frame);
+    if (status == SF_ERROR_DEVICE) { /* the method cannot; it has been said why */
+        view->progress = 1;
+        return SF_OK;
+    }
     if (!status)
         status = sf_renderer_timings(view->renderer, flight.ticket, &timings, &count);
     if (status)
@@ -45,7 +49,8 @@ static enum sf_status land(struct sf_view *view)
     if (view->looking.name[0] && strcmp(view->looking.name, view->inspected) == 0)
         sf_looking_take(&view->looking, &frame);
     /* A frame that cannot be kept (it has been said why) ends the recording, not the viewer. */
-    if (sf_shots_recording(view->shots) && view->options.returned && sf_picture_store(view, &frame) != SF_OK)
+    if (sf_shots_recording(view->shots) && view->options.returned && frame.progress >= 1 &&
+        sf_picture_store(view, &frame) != SF_OK)
         sf_view_record(view);
     return SF_OK;
 }
@@ -83,7 +88,8 @@ static struct sf_renderer_options wanted_options(const struct sf_view *view)
                                         .timing = true,
                                         .frames_kept = SF_FLIGHT + 1,
                                         .shown = true,
-                                        .returned = recording,
+                                        .returned = recording || view->shooting,
+                                        .progressive = true,
                                         .inspect = view->looking.name[0] ? view->looking.name : NULL};
 }
 
@@ -293,32 +299,42 @@ static enum sf_status draw(struct sf_view *view, struct sf_flight *flight)
     flight->cpu_ms = (float)(sf_now_ns() - begin) * NS_TO_MS;
     flight->record_ms = (float)sf_renderer_record_ns(view->renderer, NULL) * NS_TO_MS;
     view->drawn_frame = view->playback.frame;
+    view->progress = status ? 1 : sf_renderer_progress(view->renderer);
     view->counted.pictures++;
     return status;
 }
 
-/* As the scene says, at full quality, with everything back. */
-static enum sf_status shoot(struct sf_view *view)
+/* As the scene says, at full quality, with everything back. A picture that takes many steps takes as many turns of the
+ * loop. */
+static enum sf_status shoot(struct sf_view *view, bool *drawn)
 {
-    struct sf_renderer_options wanted = wanted_options(view);
+    struct sf_renderer_options wanted;
     struct sf_flight flight;
     struct sf_frame frame;
     enum sf_status status = view->governor.level ? set_level(view, 0) : SF_OK;
 
-    view->shot = false;
-    wanted.returned = true;
-    if (!status)
+    if (!status && !view->shooting) {
+        view->shooting = true;
+        wanted = wanted_options(view);
         status = set_options(view, &wanted);
-    if (status == SF_ERROR_MEMORY) /* it has been said; everything is as it was */
+    }
+    if (status == SF_ERROR_MEMORY) { /* it has been said; everything is as it was */
+        view->shot = view->shooting = false;
         return SF_OK;
+    }
     if (!status)
         status = draw(view, &flight);
     if (!status)
         status = sf_renderer_wait(view->renderer, flight.ticket, &frame);
+    if (!status && frame.progress < 1) {
+        *drawn = true;
+        return SF_OK;
+    }
+    view->shot = view->shooting = false;
     if (!status)
         sf_picture_store(view, &frame);
-    wanted.returned = false;
-    return status ? status : set_options(view, &wanted);
+    wanted = wanted_options(view);
+    return status && status != SF_ERROR_DEVICE ? status : set_options(view, &wanted);
 }
 
 enum sf_status sf_picture_update(struct sf_view *view, bool *drawn)
@@ -330,14 +346,15 @@ enum sf_status sf_picture_update(struct sf_view *view, bool *drawn)
     if (!status)
         status = govern(view);
     /* A way that was begun is gone to its end, also when that is the frame drawn last: the simulation has left it. */
-    if (status || !(view->dirty || view->shot || view->seek_total > 0 || view->playback.frame != view->drawn_frame))
+    if (status || !(view->dirty || view->shot || view->seek_total > 0 || view->progress < 1 ||
+                    view->playback.frame != view->drawn_frame))
         return status;
     status = go_to(view, view->playback.frame, &there);
     if (status || !there)
         return status;
     if (view->shot && !sf_shots_recording(view->shots))
-        return shoot(view);
-    view->shot = false; /* a recording has the picture already */
+        return shoot(view, drawn);
+    view->shot = view->shooting = false; /* a recording has the picture already */
     status = sf_picture_collect(view, SF_FLIGHT - 1);
     if (!status)
         status = draw(view, &view->flights[view->flight_count]);
@@ -359,6 +376,7 @@ enum sf_status sf_picture_open(struct sf_view *view)
     view->options.inspect = NULL;
     snprintf(view->inspected, sizeof view->inspected, "%s", view->looking.name);
     view->dirty = true;
+    view->progress = 1;
     return status;
 }
 

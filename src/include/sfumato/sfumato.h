@@ -209,10 +209,13 @@ enum sf_status sf_renderer_refine(struct sf_renderer *renderer, uint32_t frame, 
  * the picture takes many steps, it waits for all but the last two. */
 enum sf_status sf_renderer_render(struct sf_renderer *renderer, uint32_t frame, uint64_t *ticket);
 
+/* How far the picture that was queued last has come, 0..1; 1: it is finished. Below 1 only with `progressive`. */
+float sf_renderer_progress(const struct sf_renderer *renderer);
+
 struct sf_frame {
     uint32_t frame, width, height;
     double time;           /* s */
-    float progress;        /* 0..1: how far the method has come with the picture; below 1 only with `progressive` */
+    float progress;        /* sf_renderer_progress, of this one */
     const uint16_t *color; /* [height][width][4] linear RGBA half, premultiplied, row 0 on top; NULL when float_color */
     const float *color_float;
     const float *depth;        /* [height][width] m of view depth; SF_NO_DEPTH where nothing is */
