@@ -125,7 +125,8 @@ static void test_truth_scenes(void **state)
 
     (void)state;
     for (size_t i = 0; i < SF_COUNT(scenes); i++) {
-        struct sf_scene *scene = load(scenes[i].name, &by_reference, 1);
+        const char *sets[] = {by_reference, "reference.batch=128"}; /* few steps are quicker */
+        struct sf_scene *scene = load(scenes[i].name, sets, 2);
         uint32_t count, size = scenes[i].size;
         struct sf_particle *list = particles_of(scene, scenes[i].frame, &count);
         struct sf_truth_picture *truth = truth_of(scene, scenes[i].frame, list, count, size);
@@ -171,8 +172,8 @@ static void test_more_samples_are_nearer(void **state)
         double before = INFINITY;
 
         for (size_t k = 0; k < SF_COUNT(samples); k++) {
-            const char *sets[] = {by_reference, samples[k]};
-            struct sf_scene *scene = load(names[i], sets, 2);
+            const char *sets[] = {by_reference, samples[k], "reference.batch=32"};
+            struct sf_scene *scene = load(names[i], sets, 3);
             uint32_t count;
             struct sf_particle *list = particles_of(scene, 0, &count);
 
@@ -192,7 +193,7 @@ static void test_more_samples_are_nearer(void **state)
 /* ---- the same picture by every way ---- */
 
 static const char crowd[] =
-    "{\"method\":\"reference\",\"reference\":{\"samples\":96,\"batch\":16},"
+    "{\"method\":\"reference\",\"reference\":{\"samples\":48,\"batch\":8,\"shadow_size\":64},"
     "\"camera\":{\"eye\":[0,1,5],\"target\":[0,1,0]},"
     "\"lights\":[{\"type\":\"directional\",\"direction\":[-1,-1.5,-0.4],\"intensity\":2},"
     "{\"type\":\"spot\",\"position\":[1.5,2.5,1],\"direction\":[-1.5,-2,-1],\"intensity\":20},"
@@ -201,12 +202,12 @@ static const char crowd[] =
     "{\"type\":\"mesh\",\"file\":\"../assets/pyramid.gltf\",\"position\":[-0.6,0.2,0.4],\"scale\":0.4}],"
     "\"medium\":{\"extinction\":4,\"g\":0.3,\"emission\":[0.02,0.01,0]},"
     "\"ramp\":[{\"at\":0.1,\"color\":[1,0.8,0.6]},{\"at\":0.7,\"color\":[0.4,0.9,1]}],"
-    "\"emitters\":[{\"type\":\"sphere\",\"position\":[0,1,0],\"radius\":0.7,\"burst\":80,\"rate\":100,\"lifetime\":3,"
+    "\"emitters\":[{\"type\":\"sphere\",\"position\":[0,1,0],\"radius\":0.7,\"burst\":40,\"rate\":40,\"lifetime\":3,"
     "\"speed\":0.3,\"particle_radius\":[0.1,0.3]}],\"sim\":{\"capacity\":300}}";
 
-static const struct sf_renderer_options all = {.width = 52, .height = 40, .aovs = SF_AOV_SMOKE | SF_AOV_DEPTHS};
+static const struct sf_renderer_options all = {.width = 36, .height = 28, .aovs = SF_AOV_SMOKE | SF_AOV_DEPTHS};
 static const struct sf_renderer_options stepwise = {
-    .width = 52, .height = 40, .aovs = SF_AOV_SMOKE | SF_AOV_DEPTHS, .progressive = true};
+    .width = 36, .height = 28, .aovs = SF_AOV_SMOKE | SF_AOV_DEPTHS, .progressive = true};
 
 /* Draws until the picture is finished; the number of steps. */
 static uint32_t finish(struct sf_renderer *renderer, uint32_t number, struct picture *picture)
@@ -306,8 +307,8 @@ static void test_changes_begin_anew(void **state)
                    {"camera.eye=0.3,1,5", 6},
                    {"emitters.0.radius=0.5", 6},
                    {"environment.horizon=1,0,0", 6},
-                   {"reference.samples=128", 8},
-                   {"reference.batch=48", 2},
+                   {"reference.samples=72", 9},
+                   {"reference.batch=24", 2},
                    {"emitters.0.rate=90", 6}};
     struct sf_scene *before = live_parse(crowd, NULL);
     struct sf_renderer *renderer = live_create(before, &stepwise);
