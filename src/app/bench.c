@@ -284,14 +284,20 @@ static enum sf_status run_pipelined(struct sf_bench *bench, struct sf_renderer *
 
 /* The timed renderers read nothing back, not even counts; a small one says how many particles the first and the last
  * frame have. */
-static enum sf_status count_live(struct sf_bench *bench, struct sf_device *device, const struct sf_scene *scene)
+static enum sf_status count_live(struct sf_bench *bench, struct sf_device *device)
 {
+    struct sf_arguments arguments = *bench->arguments;
     struct sf_renderer_options options = {.width = COUNTING_SIDE, .height = COUNTING_SIDE, .frames_kept = IN_FLIGHT};
     const uint32_t numbers[] = {bench->frames[0], bench->frames[bench->frame_count - 1]};
     uint32_t live[2] = {0};
     struct sf_renderer *renderer = NULL;
-    enum sf_status status = sf_renderer_create(device, scene, &options, sf_console_log(), &renderer);
+    struct sf_scene *scene = NULL;
+    enum sf_status status;
 
+    arguments.method = "none"; /* how they are drawn does not matter */
+    status = sf_session_scene(&arguments, arguments.files.items[0], &scene);
+    if (!status)
+        status = sf_renderer_create(device, scene, &options, sf_console_log(), &renderer);
     for (size_t i = 0; i < 2 && !status; i++) {
         struct sf_frame frame;
         uint64_t ticket;
@@ -305,6 +311,7 @@ static enum sf_status count_live(struct sf_bench *bench, struct sf_device *devic
             live[i] = frame.live;
     }
     sf_renderer_destroy(&renderer);
+    sf_scene_destroy(&scene);
     bench->live_first = live[0];
     bench->live_last = live[1];
     return status;
@@ -331,7 +338,7 @@ static enum sf_status measure(struct sf_bench *bench, struct sf_device *device, 
     if (!status)
         status = sf_measure_ceilings(device, size.width, size.height, CEILING_REPEATS, sf_console_log(), &bench->after);
     if (!status)
-        status = count_live(bench, device, scene);
+        status = count_live(bench, device);
     return status;
 }
 

@@ -75,6 +75,13 @@ static void set_groups(uint32_t groups[3], bool now, uint32_t x, uint32_t y, uin
     groups[2] = now ? z : 0;
 }
 
+static uint32_t meshes_how(const struct sf_scene *scene)
+{
+    uint32_t triangles = sf_reference_triangles(scene);
+
+    return triangles == 0 ? MESHES_NONE : sf_reference_fits(triangles) ? MESHES_EXACT : MESHES_MAPPED;
+}
+
 static uint32_t mesh_turns(const struct sf_method_frame *frame)
 {
     return frame->tuning->software ? MESH_TURNS_SOFTWARE : MESH_TURNS_HARDWARE;
@@ -120,25 +127,27 @@ enum sf_status sf_reference_judge(const struct sf_method_frame *frame, const voi
     uint64_t rows = rows_of(scene), words = divide_up((uint32_t)scene->sim.capacity, 256) * 9;
     uint64_t view = divide_up(verdict->longest_view, SF_REFERENCE_UNROLL),
              way = divide_up(verdict->longest_way, SF_REFERENCE_UNROLL);
-    uint64_t turns = (2 + rows) * view + rows * scene->light_count * (way + frame->solids);
+    /* Knots, then for each row its weights, and for each light the smoke, the objects and the points of meshes. */
+    uint64_t turns = 2 * view + rows * (1 + view + scene->light_count * (1 + way + frame->solids + SF_REFERENCE_ROW));
+    uint64_t most = meshes_how(scene) == MESHES_EXACT ? TURNS_MAX - MESH_TURNS_SOFTWARE : TURNS_MAX;
 
     if (verdict->over > 0)
         return sf_fail(
             log, SF_ERROR_DEVICE,
-            "reference: %u pixels would look at more than %u triangles and boxes of meshes in one play, more than this "
-            "device is trusted with; use a smaller reference.batch (%d now), or simpler meshes",
-            verdict->over, mesh_turns(frame), scene->reference.batch);
+            "reference: for %u pixels the ways to the lights lead past more of the meshes' triangles than this "
+            "device can look at; use a smaller reference.batch (%d now) or simpler meshes",
+            verdict->over, scene->reference.batch);
     if (frame->tuning->software && words + verdict->longest_shadow > TURNS_MAX)
-        return sf_fail(log, SF_ERROR_DEVICE,
-                       "reference: %u particles stand between a light and one square of its shadow's map: more than a "
-                       "software device "
-                       "can add up; set reference.ground_shadow to false, use fewer particles, or a GPU",
-                       verdict->longest_shadow);
-    if (frame->tuning->software && (turns > TURNS_MAX || verdict->longest_view > TURNS_MAX))
         return sf_fail(
             log, SF_ERROR_DEVICE,
-            "reference: %u particles lie behind one tile of the frame, %u on one way to a light: more than a software "
-            "device can add up in one play; use a smaller reference.batch (%d now), fewer particles, or a GPU",
+            "reference: %u particles stand between a light and one square of its shadow's map, more than a "
+            "software device can add up; set reference.ground_shadow to false, or use fewer particles or a GPU",
+            verdict->longest_shadow);
+    if (frame->tuning->software && (turns > most || verdict->longest_view > TURNS_MAX))
+        return sf_fail(
+            log, SF_ERROR_DEVICE,
+            "reference: %u particles lie behind one tile of the frame, %u on one way to a light, more than a "
+            "software device can add up; use a smaller reference.batch (%d now), fewer particles or a GPU",
             verdict->longest_view, verdict->longest_way, scene->reference.batch);
     return SF_OK;
 }
@@ -319,13 +328,6 @@ static uint32_t casting(const struct sf_scene *scene)
     for (uint32_t i = 0; i < scene->light_count; i++)
         bits |= (uint32_t)scene->lights[i].shadows << i;
     return bits;
-}
-
-static uint32_t meshes_how(const struct sf_scene *scene)
-{
-    uint32_t triangles = sf_reference_triangles(scene);
-
-    return triangles == 0 ? MESHES_NONE : sf_reference_fits(triangles) ? MESHES_EXACT : MESHES_MAPPED;
 }
 
 static void add_march(struct sf_method_frame *frame, const struct sf_reference *reference)
