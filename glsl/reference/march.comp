@@ -4,9 +4,9 @@
 // The integral along a pixel's ray (docs/methods/reference.md), some samples of it in every play. One group a tile, one thread a pixel.
 //
 // The ray is cut into push.samples cells at the boundaries t(k / samples). The light that a cell sends to the eye is its weight, T at its
-// beginning less T at its end, both exact, times what its matter sends on at its middle; so the weights of all cells add up to 1 - T. The map t
-// gives cells about equal shares of a measure that is for the most part the light which reaches the eye, and for the rest the way: it is linear
-// between knots, where its inverse is exact. SF_REFERENCE_ROW cells next to each other are taken at once.
+// beginning less T at its end, both exact, times what its matter sends on from where its middle is; so the weights of all cells add up to 1 - T.
+// The map t gives cells about equal shares of a measure that is for the most part the light which reaches the eye, and for the rest the way: it is
+// linear between knots, where its inverse is exact. SF_REFERENCE_ROW cells next to each other are taken at once.
 #include "shared/frame.h"
 #include "shared/particle.h"
 #include "shared/reference.h"
@@ -205,14 +205,15 @@ uint solids_between(uint light, float t[ROW])
     return hidden;
 }
 
-// The same for meshes. The points are found anew: arrays that are indexed in a loop would not stay in registers.
-uint meshes_between(uint light, ray_map map, uint first)
+// The same for meshes.
+uint meshes_between(uint light, float t[ROW])
 {
     uint hidden = 0u;
     for (uint j = 0u; j < ROW; j++) {
-        float from = depth_of(map, float(first + j) / float(push.samples));
-        float to = depth_of(map, float(first + j + 1u) / float(push.samples));
-        vec3 point = 0.5 * (from + to) * ray;
+        float at = 0.0; // t[j], by its number in a way that leaves the array in registers
+        [[unroll]] for (uint k = 0u; k < ROW; k++)
+            at = k == j ? t[k] : at;
+        vec3 point = at * ray;
         vec4 way = way_to(light, point);
         hidden |= mesh_stands_between(frame.eye.xyz + point, way.xyz, way.w) ? 1u << j : 0u;
     }
@@ -235,13 +236,14 @@ void add_light(uint light, uvec2 of, float t[ROW], uint hidden, inout vec3 lit[R
     }
 }
 
-// The weights of a row's cells, and what share of their extinction scatters.
-void weigh(float ends[ROW + 1u], out float weight[ROW], out vec3 albedo[ROW])
+// Of a row's cells: their weights, what share of their extinction scatters, and where the middle of their matter is.
+void weigh(float ends[ROW + 1u], out float weight[ROW], out vec3 albedo[ROW], out float t[ROW])
 {
-    float depth[ROW + 1u];
+    float depth[ROW + 1u], moment[ROW + 1u];
     vec3 scattering[ROW + 1u];
     [[unroll]] for (uint k = 0u; k <= ROW; k++) {
         depth[k] = 0.0;
+        moment[k] = 0.0;
         scattering[k] = vec3(0.0);
     }
     for (uint i = 0u; i < list.y; i += UNROLL) {
@@ -250,8 +252,9 @@ void weigh(float ends[ROW + 1u], out float weight[ROW], out vec3 albedo[ROW])
             vec3 part = sphere_part(index, list_extinction(list, i + n, index));
             vec3 own = spheres[index].matter.yzw;
             [[unroll]] for (uint k = 0u; k <= ROW; k++) {
-                float added = part.z * (clamp(ends[k], part.x, part.y) - part.x);
+                float end = clamp(ends[k], part.x, part.y), added = part.z * (end - part.x);
                 depth[k] += added;
+                moment[k] += added * (end - ends[0] + (part.x - ends[0]));
                 scattering[k] += added * own;
             }
         }
@@ -260,6 +263,8 @@ void weigh(float ends[ROW + 1u], out float weight[ROW], out vec3 albedo[ROW])
         float within = depth[j + 1u] - depth[j];
         weight[j] = exp(-depth[j]) * opaque(max(within, 0.0));
         albedo[j] = (scattering[j + 1u] - scattering[j]) / max(within, 1e-30);
+        float centre = ends[0] + 0.5 * (moment[j + 1u] - moment[j]) / max(within, 1e-30);
+        t[j] = within > 0.0 ? clamp(centre, ends[j], ends[j + 1u]) : 0.5 * (ends[j] + ends[j + 1u]);
     }
 }
 
@@ -278,18 +283,16 @@ vec4 row_of(ray_map map, uint first, uint tile)
     vec3 albedo[ROW], lit[ROW];
     [[unroll]] for (uint k = 0u; k <= ROW; k++)
         ends[k] = depth_of(map, float(first + k) / float(push.samples));
-    [[unroll]] for (uint j = 0u; j < ROW; j++) {
-        t[j] = 0.5 * (ends[j] + ends[j + 1u]);
+    [[unroll]] for (uint j = 0u; j < ROW; j++)
         lit[j] = vec3(0.0);
-    }
-    weigh(ends, weight, albedo);
+    weigh(ends, weight, albedo, t);
     vec2 range = ranges[tile];
     uint slice = min(uint(max((ends[0] - range.x) / (range.y - range.x), 0.0) * float(push.slices)), push.slices - 1u);
     for (uint light = 0u; light < LIGHTS; light++) {
         bool casts = (CASTING >> light & 1u) != 0u;
         uint hidden = SOLIDS > 0u && MESHES < 2u && casts ? solids_between(light, t) : 0u;
         if (MESHES == 1u)
-            hidden |= casts ? meshes_between(light, map, first) : 0u;
+            hidden |= casts ? meshes_between(light, t) : 0u;
         add_light(light, lists[tile * push.lists + 1u + light * SF_REFERENCE_SLICES + slice], t, hidden, lit);
     }
     vec4 sum = vec4(0.0);

@@ -367,16 +367,15 @@ static void add_over(struct sf_method_frame *frame, const struct sf_reference *r
         {.resource = frame->color, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_KEEP},
     };
 
-    sf_graph_pass(frame->graph,
-                  &(struct sf_pass_desc){.name = "reference.over",
-                                         .kind = SF_PASS_RASTER,
-                                         .shader = "scene/screen.vert",
-                                         .fragment = "reference/over.frag",
-                                         .uses = uses,
-                                         .use_count = SF_COUNT(uses),
-                                         .vertices = 4,
-                                         .instances = 1,
-                                         .raster = {.blend = {SF_BLEND_PREMULTIPLIED}, .triangle_strip = true}});
+    sf_graph_pass(frame->graph, &(struct sf_pass_desc){.name = "reference.over",
+                                                       .kind = SF_PASS_RASTER,
+                                                       .shader = "scene/screen.vert",
+                                                       .fragment = "reference/over.frag",
+                                                       .uses = uses,
+                                                       .use_count = SF_COUNT(uses),
+                                                       .vertices = 3,
+                                                       .instances = 1,
+                                                       .raster = {.blend = {SF_BLEND_PREMULTIPLIED}}});
 }
 
 static sf_resource aov_image(struct sf_method_frame *frame, const char *name, enum sf_format format)
@@ -405,9 +404,8 @@ static void add_aovs(struct sf_method_frame *frame, const struct sf_reference *r
                                                        .fragment = "reference/over.frag",
                                                        .uses = uses,
                                                        .use_count = SF_COUNT(uses),
-                                                       .vertices = 4,
-                                                       .instances = 1,
-                                                       .raster = {.triangle_strip = true}});
+                                                       .vertices = 3,
+                                                       .instances = 1});
 }
 
 enum sf_status sf_reference_light(struct sf_method_frame *frame, void *state, const struct sf_log *log)
