@@ -39,6 +39,9 @@ struct sf_gpu_frame {
     SF_VEC4(up);    /* xyz: camera's y axis times tan(fov_y / 2); w: tan(fov_y / 2) */
     SF_VEC4(
         forward); /* xyz: unit. The ray of ndc (x, y up) with unit view depth is forward + x right + y up; w: time, s */
+    SF_VEC4(right_low); /* xyz of each: what the float leaves out, for those who need more than 24 bits */
+    SF_VEC4(up_low);
+    SF_VEC4(forward_low);
     SF_VEC4(size);       /* frame's width, height, 1/width, 1/height */
     SF_VEC4(albedo);     /* rgb: medium's single-scattering albedo; w: g */
     SF_VEC4(emission);   /* rgb, per unit of extinction; w: unused */

@@ -169,8 +169,10 @@ static enum sf_status measure_frame(struct sf_bench *bench, struct sf_renderer *
     struct sf_frame frame;
     uint64_t ticket, begin = sf_now_ns(), end, record;
     uint32_t count;
-    enum sf_status status = sf_renderer_render(renderer, number, &ticket);
+    enum sf_status status = sf_session_refine(renderer, number);
 
+    if (!status)
+        status = sf_renderer_render(renderer, number, &ticket);
     if (!status)
         status = sf_renderer_wait(renderer, ticket, &frame);
     end = sf_now_ns();
@@ -219,7 +221,9 @@ static enum sf_status warm_up(const struct sf_bench *bench, struct sf_renderer *
         struct sf_frame frame;
         uint64_t ticket;
 
-        status = sf_renderer_render(renderer, first + i, &ticket);
+        status = sf_session_refine(renderer, first + i);
+        if (!status)
+            status = sf_renderer_render(renderer, first + i, &ticket);
         if (!status)
             status = sf_renderer_wait(renderer, ticket, &frame);
         if (!status)
@@ -264,6 +268,8 @@ static enum sf_status run_pipelined(struct sf_bench *bench, struct sf_renderer *
             if (i >= IN_FLIGHT && i - IN_FLIGHT < bench->frame_count)
                 status = sf_renderer_wait(renderer, tickets[i % IN_FLIGHT], &frame);
             if (i < bench->frame_count && !status)
+                status = sf_session_refine(renderer, bench->frames[i]);
+            if (i < bench->frame_count && !status)
                 status = sf_renderer_render(renderer, bench->frames[i], &tickets[i % IN_FLIGHT]);
             if (!status)
                 status = interrupted();
@@ -278,14 +284,20 @@ static enum sf_status run_pipelined(struct sf_bench *bench, struct sf_renderer *
 
 /* The timed renderers read nothing back, not even counts; a small one says how many particles the first and the last
  * frame have. */
-static enum sf_status count_live(struct sf_bench *bench, struct sf_device *device, const struct sf_scene *scene)
+static enum sf_status count_live(struct sf_bench *bench, struct sf_device *device)
 {
+    struct sf_arguments arguments = *bench->arguments;
     struct sf_renderer_options options = {.width = COUNTING_SIDE, .height = COUNTING_SIDE, .frames_kept = IN_FLIGHT};
     const uint32_t numbers[] = {bench->frames[0], bench->frames[bench->frame_count - 1]};
     uint32_t live[2] = {0};
     struct sf_renderer *renderer = NULL;
-    enum sf_status status = sf_renderer_create(device, scene, &options, sf_console_log(), &renderer);
+    struct sf_scene *scene = NULL;
+    enum sf_status status;
 
+    arguments.method = "none"; /* how they are drawn does not matter */
+    status = sf_session_scene(&arguments, arguments.files.items[0], &scene);
+    if (!status)
+        status = sf_renderer_create(device, scene, &options, sf_console_log(), &renderer);
     for (size_t i = 0; i < 2 && !status; i++) {
         struct sf_frame frame;
         uint64_t ticket;
@@ -299,6 +311,7 @@ static enum sf_status count_live(struct sf_bench *bench, struct sf_device *devic
             live[i] = frame.live;
     }
     sf_renderer_destroy(&renderer);
+    sf_scene_destroy(&scene);
     bench->live_first = live[0];
     bench->live_last = live[1];
     return status;
@@ -325,7 +338,7 @@ static enum sf_status measure(struct sf_bench *bench, struct sf_device *device, 
     if (!status)
         status = sf_measure_ceilings(device, size.width, size.height, CEILING_REPEATS, sf_console_log(), &bench->after);
     if (!status)
-        status = count_live(bench, device, scene);
+        status = count_live(bench, device);
     return status;
 }
 

@@ -121,6 +121,8 @@ static enum sf_status queue_frame(struct capture *capture)
     if (!status && (capture->queued == 0 || frame - before > LONG_WAY))
         status = sf_session_seek(capture->renderer, frame);
     if (!status)
+        status = sf_session_refine(capture->renderer, frame);
+    if (!status)
         status = sf_renderer_render(capture->renderer, frame, &capture->tickets[slot]);
     if (!status)
         capture->queued++;

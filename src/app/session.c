@@ -100,15 +100,23 @@ enum sf_status sf_session_frames(const struct sf_arguments *arguments, uint32_t 
     return sf_frames_parse(arguments->frames, sf_console_log(), frames, count);
 }
 
-static bool show_steps(void *user, uint64_t done, uint64_t total)
+static bool show(struct sf_progress *progress, const char *what, const char *unit, uint64_t done, uint64_t total)
 {
-    struct sf_progress *progress = user;
-
     if (!progress->what)
-        sf_progress_begin(progress, "simulating", "steps", total);
+        sf_progress_begin(progress, what, unit, total);
     progress->total = total;
     sf_progress_show(progress, done);
     return !sf_interrupted();
+}
+
+static bool show_steps(void *user, uint64_t done, uint64_t total)
+{
+    return show(user, "simulating", "steps", done, total);
+}
+
+static bool show_plays(void *user, uint64_t done, uint64_t total)
+{
+    return show(user, "refining", "steps", done, total);
 }
 
 enum sf_status sf_session_seek(struct sf_renderer *renderer, uint32_t frame)
@@ -117,5 +125,15 @@ enum sf_status sf_session_seek(struct sf_renderer *renderer, uint32_t frame)
     enum sf_status status = sf_renderer_seek(renderer, frame, show_steps, &progress);
 
     sf_progress_end(&progress);
+    return status;
+}
+
+enum sf_status sf_session_refine(struct sf_renderer *renderer, uint32_t frame)
+{
+    struct sf_progress progress = {0};
+    enum sf_status status = sf_renderer_refine(renderer, frame, show_plays, &progress);
+
+    if (progress.what)
+        sf_progress_end(&progress);
     return status;
 }

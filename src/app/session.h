@@ -20,5 +20,7 @@ enum sf_status sf_session_validated(const struct sf_arguments *arguments, const 
 enum sf_status sf_session_frames(const struct sf_arguments *arguments, uint32_t **frames, size_t *count);
 /* Steps the simulation up to `frame` with a progress line: for long ways. SF_ERROR_INTERRUPTED after Ctrl-C. */
 enum sf_status sf_session_seek(struct sf_renderer *renderer, uint32_t frame);
+/* All but the end of a picture that takes long, likewise. */
+enum sf_status sf_session_refine(struct sf_renderer *renderer, uint32_t frame);
 
 #endif

@@ -97,6 +97,10 @@ void sf_player_bind_image(struct sf_player *player, sf_resource resource, struct
  * anew, and is refused without when the plan uses the buffer. NULL outside a frame, or when memory is out. */
 void *sf_player_upload(struct sf_player *player, sf_resource resource);
 
+/* The next play goes on with what the last one began (a picture that takes several plays, each in a frame of its own):
+ * results and times go where those of the last one went, which are given up, and its frame is the one to ask for. */
+void sf_player_continue(struct sf_player *player);
+
 /* A frame: plays recorded in order into one command buffer and submitted together. Up to 2 frames are in flight: begin
  * waits for the older one. Not thread safe: one thread begins, plays and ends. */
 enum sf_status sf_frame_begin(struct sf_gpu *gpu);

@@ -413,13 +413,14 @@ static void record_transfer(struct sf_player *player, VkCommandBuffer commands, 
         gpu->vk.vkCmdCopyBufferToImage(commands, source->buffer, target->image, target_layout, 1, &buffer_image);
 }
 
-static void record(struct sf_player *player, VkCommandBuffer commands, struct sf_timer *timer, uint64_t serial)
+static void record(struct sf_player *player, VkCommandBuffer commands, struct sf_timer *timer, uint64_t serial,
+                   bool continued)
 {
     struct sf_gpu *gpu = player->gpu;
     uint32_t barriers = 0;
 
     if (timer)
-        sf_timer_start(gpu, commands, timer, serial);
+        sf_timer_start(gpu, commands, timer, serial, continued);
     for (uint32_t i = 0; i < player->step_count; i++) {
         const struct sf_step *step = &player->steps[i];
         VkDebugUtilsLabelEXT label = {.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT, .pLabelName = step->plan->name};
@@ -463,6 +464,11 @@ static void finish_play(struct sf_player *player, uint64_t serial)
     }
 }
 
+void sf_player_continue(struct sf_player *player)
+{
+    player->continues = true;
+}
+
 enum sf_status sf_player_play(struct sf_player *player)
 {
     struct sf_gpu *gpu = player->gpu;
@@ -470,7 +476,9 @@ enum sf_status sf_player_play(struct sf_player *player)
     uint64_t start = sf_clock_ns(), serial = atomic_load(&gpu->submitted) + 1;
     struct sf_timer *timer = NULL;
     enum sf_status status;
+    bool continued = player->continues && player->slice_serial > 0;
 
+    player->continues = false;
     if (!gpu->recording)
         return sf_fail(gpu->log, SF_ERROR_USAGE, "'%s' is played outside of a frame", player->plan->name);
     status = check_objects(player, serial);
@@ -483,14 +491,14 @@ enum sf_status sf_player_play(struct sf_player *player)
                                      player->sets);
     if (status)
         return status;
-    if (serial != player->slice_serial)
+    if (serial != player->slice_serial && !continued)
         player->slice = (player->slice + 1) % player->depth;
     player->slice_serial = serial;
     if (player->timing && player->timers)
         timer = &player->timers[player->slice];
     resolve_all(player, player->slice);
     write_descriptors(player);
-    record(player, frame->commands, timer, serial);
+    record(player, frame->commands, timer, serial, continued);
     finish_play(player, serial);
     player->record_ns = sf_clock_ns() - start;
     return SF_OK;

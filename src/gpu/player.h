@@ -79,6 +79,7 @@ struct sf_player {
     uint32_t slice;        /* of them, that the last play wrote: */
     uint64_t slice_serial; /* in this frame. Frames without a play of this player use up no slice */
     bool played, timing;
+    bool continues;          /* the next play uses up no slice */
     struct sf_timer *timers; /* [depth] */
     uint64_t record_ns;
 };

@@ -42,11 +42,12 @@ static void stamp(struct sf_gpu *gpu, VkCommandBuffer commands, const struct sf_
     gpu->vk.vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, timer->pool, query);
 }
 
-void sf_timer_start(struct sf_gpu *gpu, VkCommandBuffer commands, struct sf_timer *timer, uint64_t serial)
+void sf_timer_start(struct sf_gpu *gpu, VkCommandBuffer commands, struct sf_timer *timer, uint64_t serial,
+                    bool continued)
 {
     uint32_t first;
 
-    timer->plays = timer->serial == serial ? timer->plays + 1 : 1;
+    timer->plays = timer->serial == serial || continued ? timer->plays + 1 : 1;
     timer->serial = serial;
     if (timer->plays > SF_TIMER_PLAYS)
         return;

@@ -18,7 +18,12 @@ struct sf_method_frame {
     sf_resource color; /* RGBA16F frame: the shaded scene, premultiplied; alpha is 1 on surfaces and visible background,
                           0 on nothing */
     sf_resource depth; /* R32F frame: linear view depth of the scene, SF_DEPTH_FAR where there is none */
-    sf_resource shadow_map; /* exponential shadow maps of the lights, one cell a light */
+    sf_resource shadow_map;  /* exponential shadow maps of the lights, one cell a light */
+    sf_resource objects;     /* uniform: struct sf_gpu_object[SF_FRAME_OBJECTS]: planes, then solids, then meshes */
+    uint32_t planes, solids; /* of them; solids are boxes, spheres and cylinders */
+    /* For `update`: which play of the picture comes next. 0 begins it anew; behind the last (see `plays`) it is finished,
+     * and only drawn again. */
+    uint32_t play;
     /* Set by `light`: what the scene's shading reads for the smoke's shadow on it. 0: none. */
     sf_resource smoke_map;   /* RGBA32F, cells side by side, one a light: R near, G far, B coverage, A optical depth */
     bool smoke_shadows;      /* the scene is to be shadowed by what smoke_map holds */
@@ -27,6 +32,7 @@ struct sf_method_frame {
     bool want_aovs;
     sf_resource aov_radiance; /* RGBA16F: premultiplied smoke alone, A: alpha */
     sf_resource aov_depths;   /* RGBA32F: near, far (m of view depth), optical depth, transmittance */
+    sf_resource verdict;      /* buffer for `judge`, which comes back with the frame */
 };
 
 struct sf_method_row {
@@ -39,6 +45,12 @@ struct sf_method_row {
     /* Renews push constants from the scene's settings before each play. */
     void (*update)(const struct sf_method_frame *frame, void *state);
     size_t state_bytes;
+    /* How many plays of its graph bring a picture to its end, each bettering what the one before left in persistent
+     * images; NULL: one does. */
+    uint32_t (*plays)(const struct sf_scene *scene);
+    /* Whether a frame came out as it should, from the method's verdict buffer; else the reason is in the log. NULL: it always
+     * does. */
+    enum sf_status (*judge)(const struct sf_method_frame *frame, const void *verdict, const struct sf_log *log);
     /* Device objects that outlive a graph (atlas textures): NULL when there are none. */
     enum sf_status (*create_assets)(struct sf_gpu *gpu, const struct sf_scene *scene, const struct sf_log *log,
                                     void **assets);

@@ -1,5 +1,6 @@
 #include "methods/method.h"
 #include "methods/larsson.h"
+#include "methods/reference.h"
 #include "methods/thick.h"
 
 const struct sf_method_row sf_methods[] = {
@@ -33,6 +34,22 @@ const struct sf_method_row sf_methods[] = {
             .destroy_assets = sf_thick_assets_destroy,
             .same_assets = sf_thick_assets_same,
             .bind_assets = sf_thick_assets_bind,
+        },
+    [SF_METHOD_REFERENCE] =
+        {
+            .name = "reference",
+            .doc = "the integral itself by ever more samples: single scattering, every light, smoke on smoke exactly "
+                   "(METHODS G4)",
+            .light = sf_reference_light,
+            .view = sf_reference_view,
+            .update = sf_reference_update,
+            .state_bytes = sizeof(struct sf_reference),
+            .plays = sf_reference_plays,
+            .judge = sf_reference_judge,
+            .create_assets = sf_reference_assets_create,
+            .destroy_assets = sf_reference_assets_destroy,
+            .same_assets = sf_reference_assets_same,
+            .bind_assets = sf_reference_assets_bind,
         },
 };
 const uint32_t sf_method_count = sizeof sf_methods / sizeof sf_methods[0];

@@ -14,6 +14,7 @@
 
 enum {
     LIST_BYTES_MAX = 64 << 20,
+    LIGHT_LIST_BYTES_MAX = 16 << 20,
     STORAGE_BYTES_MAX = 128 << 20, /* every device lets a shader see that much of a buffer */
 };
 
@@ -35,7 +36,8 @@ void sf_thick_update(const struct sf_method_frame *frame, void *state)
     uint64_t capacity = thick->push.capacity, tiles = (uint64_t)thick->push.tiles_x * thick->push.tiles_y;
     uint64_t padded = sf_divide_up(thick->push.capacity, SF_THICK_TURN) * SF_THICK_TURN;
     thick->push.list_words = least(tiles * padded, LIST_BYTES_MAX / 4);
-    thick->push.light_list = least(capacity, LIST_BYTES_MAX / 4 / ((uint64_t)light_tiles(thick) * thick->push.cells));
+    thick->push.light_list =
+        least(capacity, LIGHT_LIST_BYTES_MAX / 4 / ((uint64_t)light_tiles(thick) * thick->push.cells));
 }
 
 /* Spheres that a subgroup reads together. */

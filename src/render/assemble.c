@@ -64,7 +64,10 @@ static void declare_inputs(struct sf_assembly *assembly, const struct sf_assembl
     const struct sf_shadow_cells *shadow = &assembly->drawn.shadow;
 
     method->frame = upload(graph, "frame", sizeof(struct sf_gpu_frame));
-    assembly->objects_upload = upload(graph, "objects", sizeof(struct sf_gpu_object) * SF_FRAME_OBJECTS);
+    method->objects = assembly->objects_upload =
+        upload(graph, "objects", sizeof(struct sf_gpu_object) * SF_FRAME_OBJECTS);
+    method->planes = assembly->drawn.list.planes;
+    method->solids = assembly->drawn.list.solids;
     method->particles = import_buffer(graph, "particles", options->capacity * sizeof(struct sf_particle), true);
     method->counts = import_buffer(graph, "counts", sizeof(struct sf_particle_counts), false);
     if (shadow->count > 0)
@@ -274,6 +277,9 @@ static void declare_outputs(struct sf_assembly *assembly, const struct sf_assemb
     if (options->particles)
         assembly->read_particles = declare_readback(assembly, "read.particles", "output.particles", method->particles,
                                                     options->capacity * sizeof(struct sf_particle));
+    if (method->verdict)
+        assembly->read_verdict = declare_readback(assembly, "read.verdict", "output.verdict", method->verdict,
+                                                  sf_graph_buffer_at(assembly->graph, method->verdict)->bytes);
     if (!returned)
         return;
     if (options->aovs & SF_AOV_SMOKE && method->aov_radiance) {

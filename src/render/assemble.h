@@ -18,7 +18,7 @@ struct sf_assembly {
     sf_resource objects_upload;
     sf_resource environment, blank; /* imported images; 0 when not needed */
     sf_resource vertices, indices;  /* imported; 0 without meshes */
-    sf_resource read_color, read_depth, read_counts, read_smoke, read_depths,
+    sf_resource read_color, read_depth, read_counts, read_verdict, read_smoke, read_depths,
         read_particles;          /* readback buffers; 0 when not asked for */
     enum sf_format smoke_format; /* of read_smoke: RGBA16F or RGBA32F, as the method has it */
     struct sf_inspected inspected;

@@ -107,5 +107,6 @@ const char *sf_shader_name(uint32_t index)
 
 enum sf_status sf_device_set_shader(struct sf_device *device, const char *name, const uint32_t *words, size_t bytes)
 {
+    device->shaders_set++;
     return sf_gpu_set_shader(device->gpu, name, words, bytes);
 }

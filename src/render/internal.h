@@ -8,6 +8,7 @@
 /* The public device is the room's own behind another name. */
 struct sf_device {
     struct sf_gpu *gpu;
+    uint64_t shaders_set; /* how often sf_device_set_shader was asked for another */
 };
 
 /* The picture that stays on the device (sf_renderer_options.shown), RGBA32F when *float_color, else RGBA16F, of

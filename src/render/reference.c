@@ -34,6 +34,7 @@ static const char *foreign_medium(int32_t method)
     case SF_METHOD_NONE:
     case SF_METHOD_THICK:
     case SF_METHOD_LARSSON:
+    case SF_METHOD_REFERENCE:
         return NULL;
     }
     return "a medium of its own";

@@ -111,6 +111,28 @@ enum sf_status sf_renderer_seek(struct sf_renderer *renderer, uint32_t frame, sf
 
 /* ---- frames ---- */
 
+/* How many plays of the frame's graph the picture takes. */
+static uint32_t plays_of(const struct sf_renderer *renderer)
+{
+    const struct sf_method_row *row = renderer->assets.row;
+
+    return row->plays ? row->plays(renderer->scene) : 1;
+}
+
+/* What the picture is of; a picture of something else begins anew. */
+static void compare_still(struct sf_renderer *renderer, const struct sf_gpu_frame *frame)
+{
+    struct sf_still *still = &renderer->still;
+    uint64_t steps = sf_particles_steps(renderer->particles), shaders = renderer->device->shaders_set;
+
+    if (!still->valid || still->steps != steps || still->shaders_set != shaders ||
+        memcmp(&still->frame, frame, sizeof *frame) != 0)
+        still->plays = 0;
+    *still = (struct sf_still){
+        .valid = true, .plays = still->plays, .steps = steps, .shaders_set = shaders, .frame = *frame};
+}
+
+/* The next play of the picture. */
 static enum sf_status record_picture(struct sf_renderer *renderer, struct sf_queued *queued)
 {
     struct sf_assembly *assembly = renderer->stage.assembly;
@@ -135,42 +157,93 @@ static enum sf_status record_picture(struct sf_renderer *renderer, struct sf_que
     memcpy(objects, assembly->drawn.objects, sizeof assembly->drawn.objects);
     sf_matrix_transpose(filled.world_to_view, queued->world_to_camera);
     sf_matrix_transpose(filled.world_to_clip, queued->world_to_clip);
+    compare_still(renderer, &filled);
+    assembly->method.play = renderer->still.plays;
     if (row->update)
         row->update(&assembly->method, assembly->state);
+    if (renderer->begun)
+        sf_player_continue(player);
     status = sf_player_play(player);
     renderer->record_ns += sf_player_record_ns(player);
     renderer->recorded += assembly->plan->pass_count;
+    if (!status && renderer->still.plays < plays_of(renderer))
+        renderer->still.plays++;
+    return status;
+}
+
+/* A play of the picture and, before the first, the last steps to it: one submit. */
+static enum sf_status play_picture(struct sf_renderer *renderer, uint32_t number)
+{
+    struct sf_queued *coming = &renderer->coming;
+    uint64_t target = steps_at(renderer->scene, number);
+    enum sf_status status = sf_frame_begin(renderer->device->gpu), ended;
+    bool steps;
+
+    if (status)
+        return status;
+    if (!renderer->begun || coming->number != number)
+        *coming = (struct sf_queued){.number = number, .time = (double)number / renderer->scene->sim.fps};
+    steps = sf_particles_steps(renderer->particles) < target;
+    status = record_steps(renderer, target - sf_particles_steps(renderer->particles));
+    if (!status)
+        status = record_picture(renderer, coming);
+    renderer->begun = !status;
+    ended = sf_frame_end(renderer->device->gpu, &coming->serial);
+    status = status ? status : ended;
+    if (steps)
+        coming->stepped = coming->serial;
+    if (status)
+        renderer->still.valid = renderer->begun = false;
+    else
+        renderer->stage.drawn = true;
+    return status;
+}
+
+enum sf_status sf_renderer_refine(struct sf_renderer *renderer, uint32_t frame, sf_progress_fn progress, void *user)
+{
+    uint32_t last = plays_of(renderer) - 1, done;
+    enum sf_status status = last > 0 ? sf_renderer_seek(renderer, frame, NULL, NULL) : SF_OK;
+
+    if (!renderer->options.progressive)
+        renderer->still.valid = false;
+    for (done = 0; done < last && !status; done = renderer->still.plays) {
+        if (progress && !progress(user, done, last)) {
+            sf_log(renderer->log, SF_LOG_DEBUG, "the picture was stopped at %u of %u", done, last + 1);
+            return SF_ERROR_INTERRUPTED;
+        }
+        status = play_picture(renderer, frame);
+    }
+    if (progress && !status && last > 0 && !progress(user, last, last))
+        status = SF_ERROR_INTERRUPTED;
     return status;
 }
 
 enum sf_status sf_renderer_render(struct sf_renderer *renderer, uint32_t frame, uint64_t *ticket)
 {
-    struct sf_gpu *gpu = renderer->device->gpu;
-    struct sf_queued queued = {.number = frame, .time = (double)frame / renderer->scene->sim.fps};
-    uint64_t target = steps_at(renderer->scene, frame);
+    uint32_t plays = plays_of(renderer);
     enum sf_status status = sf_renderer_seek(renderer, frame, NULL, NULL);
 
     *ticket = 0;
-    if (status)
-        return status;
     renderer->record_ns = 0;
     renderer->recorded = 0;
-    status = sf_frame_begin(gpu);
+    if (!renderer->options.progressive && !renderer->begun)
+        renderer->still.valid = false;
+    do {
+        status = status ? status : play_picture(renderer, frame);
+    } while (!status && !renderer->options.progressive && renderer->still.plays < plays);
     if (status)
         return status;
-    queued.stepped = sf_particles_steps(renderer->particles) < target;
-    status = record_steps(renderer, target - sf_particles_steps(renderer->particles));
-    if (!status)
-        status = record_picture(renderer, &queued);
-    enum sf_status ended = sf_frame_end(gpu, &queued.serial);
-    status = status ? status : ended;
-    if (status)
-        return status;
-    renderer->stage.drawn = true;
-    queued.ticket = ++renderer->tickets;
-    renderer->queued[queued.ticket % SF_TICKETS] = queued;
-    *ticket = queued.ticket;
+    renderer->coming.ticket = ++renderer->tickets;
+    renderer->coming.progress = (float)renderer->still.plays / (float)plays;
+    renderer->queued[renderer->coming.ticket % SF_TICKETS] = renderer->coming;
+    renderer->begun = false;
+    *ticket = renderer->coming.ticket;
     return SF_OK;
+}
+
+float sf_renderer_progress(const struct sf_renderer *renderer)
+{
+    return renderer->tickets > 0 ? renderer->queued[renderer->tickets % SF_TICKETS].progress : 0;
 }
 
 /* NULL, with a message, when its results are gone or it never was. */
@@ -326,6 +399,7 @@ enum sf_status sf_renderer_wait(struct sf_renderer *renderer, uint64_t ticket, s
     frame->height = assembly->height;
     frame->time = queued->time;
     fill_view(&queued->pose, &frame->view);
+    frame->progress = queued->progress;
     memcpy(frame->world_to_camera, queued->world_to_camera, sizeof frame->world_to_camera);
     memcpy(frame->world_to_clip, queued->world_to_clip, sizeof frame->world_to_clip);
     const void *color = read_back(renderer, assembly->read_color, queued->serial, &status);
@@ -341,6 +415,9 @@ enum sf_status sf_renderer_wait(struct sf_renderer *renderer, uint64_t ticket, s
         status = take_smoke(renderer, queued, frame);
     if (!status)
         status = take_inspected(renderer, queued, frame);
+    const void *verdict = read_back(renderer, assembly->read_verdict, queued->serial, &status);
+    if (!status && verdict && sf_methods[assembly->drawn.scene->method].judge)
+        return sf_methods[assembly->drawn.scene->method].judge(&assembly->method, verdict, renderer->log);
     if (status)
         return sf_fail(renderer->log, status, "frame %u: %s", queued->number,
                        status == SF_ERROR_MEMORY ? "out of memory" : "its results are gone");
@@ -394,7 +471,7 @@ enum sf_status sf_renderer_timings(struct sf_renderer *renderer, uint64_t ticket
         return sf_fail(renderer->log, SF_ERROR_MEMORY, "timings: out of memory");
     renderer->stage.timings = room;
     if (queued->stepped)
-        status = add_timings(renderer, sf_particles_player(renderer->particles), simulation, queued->serial, count);
+        status = add_timings(renderer, sf_particles_player(renderer->particles), simulation, queued->stepped, count);
     if (!status)
         status = add_timings(renderer, renderer->stage.player, plan, queued->serial, count);
     *timings = room;

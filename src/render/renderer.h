@@ -14,8 +14,9 @@ struct sf_queued {
     uint64_t ticket, serial;
     uint32_t number;
     double time;
-    bool stepped; /* simulation steps went with it */
     struct sf_camera_pose pose;
+    uint64_t stepped; /* the frame of the device with which simulation steps went; 0: none */
+    float progress;
     float world_to_camera[16], world_to_clip[16];
 };
 
@@ -33,6 +34,15 @@ struct sf_stage {
     bool drawn;                 /* it holds a picture */
 };
 
+/* How far the picture in hand has come, and what it is of: with anything else it begins anew. */
+struct sf_still {
+    bool valid;
+    uint32_t plays; /* of the method's graph so far */
+    uint64_t steps; /* of the simulation */
+    uint64_t shaders_set;
+    struct sf_gpu_frame frame;
+};
+
 struct sf_renderer {
     struct sf_device *device;
     const struct sf_scene *scene;
@@ -43,6 +53,9 @@ struct sf_renderer {
     struct sf_particles *particles;
     struct sf_assets assets;
     struct sf_stage stage;
+    struct sf_still still;
+    struct sf_queued coming; /* the picture in hand, which has no ticket yet, when: */
+    bool begun;
     struct sf_queued queued[SF_TICKETS]; /* by ticket */
     uint64_t tickets, void_tickets;      /* given so far; of these the first ones, whose results are gone */
     uint64_t record_ns;

@@ -119,6 +119,7 @@ static void take_stage(struct sf_renderer *renderer, struct sf_stage *stage)
     struct sf_stage old = renderer->stage;
 
     renderer->stage = *stage;
+    renderer->still.valid = renderer->begun = false;
     renderer->void_tickets = renderer->tickets;
     leave_stage(&old, stage);
 }
@@ -185,6 +186,15 @@ void sf_renderer_destroy(struct sf_renderer **out)
 
 /* ---- changing ---- */
 
+/* Whether a picture of one scene is a picture of the other: `output` is for those who show it. */
+static bool same_picture(const struct sf_scene *a, const struct sf_scene *b)
+{
+    struct sf_scene other = *b;
+
+    other.output = a->output;
+    return sf_scene_difference(a, &other) == 0;
+}
+
 enum sf_status sf_renderer_set_scene(struct sf_renderer *renderer, const struct sf_scene *scene)
 {
     unsigned rebuild = sf_scene_difference(renderer->scene, scene);
@@ -209,6 +219,7 @@ enum sf_status sf_renderer_set_scene(struct sf_renderer *renderer, const struct 
         return status;
     }
     struct sf_assets old = renderer->assets;
+    renderer->still.valid = renderer->still.valid && same_picture(renderer->scene, scene);
     renderer->scene = scene;
     renderer->assets = assets;
     sf_particles_set_scene(renderer->particles, scene);
@@ -220,7 +231,7 @@ enum sf_status sf_renderer_set_scene(struct sf_renderer *renderer, const struct 
     sf_assets_leave(&old, &assets);
     /* The player that timed earlier frames' steps is gone. */
     for (int i = 0; i < SF_TICKETS && rebuild & SF_REBUILD_SIM; i++)
-        renderer->queued[i].stepped = false;
+        renderer->queued[i].stepped = 0;
     return SF_OK;
 }
 

@@ -17,7 +17,7 @@ _Static_assert((int)SF_OBJECT_KIND_BOX == (int)SF_OBJECT_BOX && (int)SF_OBJECT_K
                "kinds");
 _Static_assert(sizeof(struct sf_gpu_object) == 112, "std140");
 _Static_assert(sizeof(struct sf_gpu_light) == 128, "std140");
-_Static_assert(sizeof(struct sf_gpu_frame) == 64 * 3 + 16 * (11 + 9 + SF_FRAME_RAMP + 1) + 128 * SF_FRAME_LIGHTS,
+_Static_assert(sizeof(struct sf_gpu_frame) == 64 * 3 + 16 * (14 + 9 + SF_FRAME_RAMP + 1) + 128 * SF_FRAME_LIGHTS,
                "std140");
 
 static const double PI = 3.14159265358979323846;
@@ -55,6 +55,15 @@ static void set4(float to[4], double x, double y, double z, double w)
     to[1] = (float)y;
     to[2] = (float)z;
     to[3] = (float)w;
+}
+
+/* Of three doubles, and what rounding leaves out; the fourth of `to` stays. */
+static void set_axis(float to[4], float low[4], const double axis[3], double scale)
+{
+    for (int i = 0; i < 3; i++) {
+        to[i] = (float)(axis[i] * scale);
+        low[i] = (float)(axis[i] * scale - (double)to[i]);
+    }
 }
 
 static void set_rgb(float to[4], const float rgb[3], double scale)
@@ -116,9 +125,11 @@ static void fill_camera(const struct sf_camera_pose *pose, uint32_t width, uint3
     frame->view_to_clip[14] = pose->near_clip;
 
     set4(frame->eye, eye[0], eye[1], eye[2], pose->near_clip);
-    set4(frame->right, right[0] * tan_x, right[1] * tan_x, right[2] * tan_x, tan_x);
-    set4(frame->up, up[0] * tan_y, up[1] * tan_y, up[2] * tan_y, tan_y);
-    set4(frame->forward, forward[0], forward[1], forward[2], frame->forward[3]);
+    frame->right[3] = (float)tan_x;
+    frame->up[3] = (float)tan_y;
+    set_axis(frame->right, frame->right_low, right, tan_x);
+    set_axis(frame->up, frame->up_low, up, tan_y);
+    set_axis(frame->forward, frame->forward_low, forward, 1);
     set4(frame->size, width, height, 1.0 / width, 1.0 / height);
 }
 

@@ -199,7 +199,7 @@ struct sf_ramp_key {
 
 /* ---- settings: the groups of the parameter table that are not lists ---- */
 
-enum sf_method { SF_METHOD_NONE, SF_METHOD_THICK, SF_METHOD_LARSSON };
+enum sf_method { SF_METHOD_NONE, SF_METHOD_THICK, SF_METHOD_LARSSON, SF_METHOD_REFERENCE };
 enum sf_resolution { SF_RESOLUTION_FULL, SF_RESOLUTION_HALF, SF_RESOLUTION_QUARTER };
 enum sf_thick_placement { SF_PLACEMENT_EQUAL, SF_PLACEMENT_UNIFORM, SF_PLACEMENT_JITTERED };
 enum sf_tone { SF_TONE_LINEAR, SF_TONE_REINHARD, SF_TONE_ACES, SF_TONE_NEUTRAL };
@@ -245,6 +245,12 @@ struct sf_larsson_settings {
     float soft; /* m: extra fade towards the scene's surface (thesis pass 10); 0: none, the clipped chord does it */
     float life_fade; /* exponent of the thesis' alpha-from-life; 0: none */
 };
+struct sf_reference_settings {
+    int32_t samples;     /* along each ray through the smoke, when the picture is finished */
+    int32_t batch;       /* of them in one play of the graph: what is done between two pictures of the viewer */
+    int32_t shadow_size; /* px: map of the smoke's shadow on the scene, per light */
+    bool ground_shadow;  /* smoke shadows the scene */
+};
 
 struct sf_scene {
     const char *path; /* where it came from */
@@ -270,6 +276,7 @@ struct sf_scene {
     struct sf_shadow_settings shadow;
     struct sf_thick_settings thick;
     struct sf_larsson_settings larsson;
+    struct sf_reference_settings reference;
     /* The values as they were given, before directions are normalised, emitters take the medium's extinction, and files
      * are read: what controls show. NULL in a scene that was not loaded. */
     const struct sf_scene *stated;

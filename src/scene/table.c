@@ -156,10 +156,25 @@ static const struct sf_param_group larsson_group =
     GROUP("larsson", struct sf_larsson_settings, larsson_rows,
           "The method thick-larsson alone: the thesis's way, one interval a ray.");
 
+static const struct sf_param reference_rows[] = {
+    {ROW_INT("samples", struct sf_reference_settings, samples, 1024, 8, 65536, "",
+             "along each ray through the smoke, in the finished picture: the error falls with their number")},
+    {ROW_INT("batch", struct sf_reference_settings, batch, 16, 8, 256, "",
+             "of them at once: between two pictures of the viewer")},
+    {ROW_INT("shadow_size", struct sf_reference_settings, shadow_size, 512, 16, 4096, "px",
+             "side of the map of the smoke's shadow on the scene, per light"),
+     .rebuild = SF_REBUILD_GRAPH},
+    {ROW_BOOL("ground_shadow", struct sf_reference_settings, ground_shadow, 1, "the smoke casts shadows on objects"),
+     .rebuild = SF_REBUILD_GRAPH},
+};
+static const struct sf_param_group reference_group =
+    GROUP("reference", struct sf_reference_settings, reference_rows,
+          "The method reference: the integral itself, to any exactness, slowly.");
+
 #define ROW_OBJECT(k, f, of, text)                                                                                     \
     .key = k, .type = SF_PARAM_OBJECT, .offset = offsetof(struct sf_scene, f), .group = &of, .unit = "", .doc = text
 
-static const char *const methods[] = {"none", "thick", "thick-larsson", NULL};
+static const char *const methods[] = {"none", "thick", "thick-larsson", "reference", NULL};
 static const struct sf_param scene_rows[] = {
     {ROW_OBJECT("camera", camera, sf_scene_camera_group, "the eye")},
     {ROW_LIST("lights", struct sf_scene, lights, light_count, sf_scene_light_group, 0, SF_LIGHTS_MAX, "lamps")},
@@ -181,6 +196,7 @@ static const struct sf_param scene_rows[] = {
     {ROW_OBJECT("shadow", shadow, shadow_group, "shadows of objects")},
     {ROW_OBJECT("thick", thick, thick_group, "the methods thick and thick-larsson")},
     {ROW_OBJECT("larsson", larsson, larsson_group, "the method thick-larsson")},
+    {ROW_OBJECT("reference", reference, reference_group, "the method reference")},
 };
 const struct sf_param_group sf_scene_group =
     GROUP("scene", struct sf_scene, scene_rows, "The outermost object of a scene file.");

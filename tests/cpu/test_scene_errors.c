@@ -161,7 +161,8 @@ static void test_faults(void **state)
          "/environment/files: must hold 6 file names, and holds 2"},
         {"{\"environment\":{\"type\":\"cube\",\"files\":[1,2,3,4,5,6]}}",
          "/environment/files/0: must be a string, not a number"},
-        {"{\"method\":\"thik\"}", "/method: 'thik' is not one of none, thick, thick-larsson, did you mean thick?"},
+        {"{\"method\":\"thik\"}",
+         "/method: 'thik' is not one of none, thick, thick-larsson, reference, did you mean thick?"},
         {"{\"sim\":{\"capacity\":1048577}}", "/sim/capacity: 1048577 is out of range: 1 to 1048576 particles"},
         {"{\"sim\":{\"capacity\":1},\"emitters\":[{\"type\":\"list\",\"particles\":[{\"centre\":[0,0,0],\"radius\":1},{"
          "\"centre\":[0,0,0],\"radius\":1}]}]}",

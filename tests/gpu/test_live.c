@@ -220,7 +220,7 @@ static void test_failures(void **state)
         enum sf_status status;
         const char *why;
     } scenes[] = {
-        {"sim.capacity=1000000", SF_ERROR_SCENE, "/sim/capacity"},
+        {"sim.capacity=1000000", SF_ERROR_MEMORY, "'light.list' needs"},
         {"shadow.map_size=8192", SF_ERROR_MEMORY, "'shadow.map' needs"},
         {"thick.light_size=1024", SF_ERROR_MEMORY, "budget"},
         {"method=none", SF_ERROR_USAGE, "no image or buffer 'light.raw'"},

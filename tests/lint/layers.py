@@ -16,7 +16,7 @@ ALLOWED = {
     "sim": {"base", "params", "scene", "graph", "gpu"},
     "light": {"base", "params", "scene", "graph", "gpu"},
     "truth": {"base", "params", "scene"},
-    "methods": {"base", "params", "scene", "graph", "gpu", "sim", "light"},
+    "methods": {"base", "params", "scene", "graph", "gpu", "sim", "light", "truth"},
     "render": {"base", "params", "scene", "graph", "gpu", "sim", "light", "truth", "methods", "output"},
     "app": set(),
     "include": set(),

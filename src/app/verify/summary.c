@@ -84,6 +84,15 @@ static bool case_note(const struct sf_verify_case *result, bool chosen, size_t i
     return index < 3;
 }
 
+/* Whether a method makes its picture in many steps, of which the renderer times the last. */
+static bool has_steps(const struct sf_verify *verify)
+{
+    for (size_t i = 0; i < verify->entry_count; i++)
+        if (strcmp(verify->entries[i].method, "reference") == 0)
+            return true;
+    return false;
+}
+
 bool sf_verify_note(const struct sf_verify *verify, size_t index, char *text, size_t room)
 {
     char name[128];
@@ -108,5 +117,9 @@ bool sf_verify_note(const struct sf_verify *verify, size_t index, char *text, si
             }
         }
     }
-    return false;
+    if (seen != index || verify->arguments->repeats == 0 || !has_steps(verify))
+        return false;
+    snprintf(text, room,
+             "ms of method reference is that of its last step, not of the picture: sfumato bench has the wall time");
+    return true;
 }

@@ -52,6 +52,11 @@ static void draw_numbers(struct sf_view *view)
         sf_ui_text_color(sf_ui_dim, "%u particles  %.1f ms", view->live, (double)stats->gpu_median);
     sf_ui_tooltip("live particles (%u births refused by the capacity), pictures a second, the device's time for one",
                   view->dropped);
+    if (view->progress < 1) {
+        sf_ui_same_line(0);
+        sf_ui_text_color(sf_ui_accent, "%.0f %%", (double)(100 * view->progress));
+        sf_ui_tooltip("of the picture's samples");
+    }
     if (view->governor.level > 0) {
         sf_ui_same_line(0);
         sf_ui_text_color(sf_ui_accent, "coarse");

@@ -29,6 +29,10 @@ static enum sf_status land(struct sf_view *view)
     view->flight_count--;
     memmove(&view->flights[0], &view->flights[1], view->flight_count * sizeof flight);
     status = sf_renderer_wait(view->renderer, flight.ticket, &frame);
+    if (status == SF_ERROR_DEVICE) { /* the method cannot; it has been said why */
+        view->progress = 1;
+        return SF_OK;
+    }
     if (!status)
         status = sf_renderer_timings(view->renderer, flight.ticket, &timings, &count);
     if (status)
@@ -45,7 +49,8 @@ static enum sf_status land(struct sf_view *view)
     if (view->looking.name[0] && strcmp(view->looking.name, view->inspected) == 0)
         sf_looking_take(&view->looking, &frame);
     /* A frame that cannot be kept (it has been said why) ends the recording, not the viewer. */
-    if (sf_shots_recording(view->shots) && view->options.returned && sf_picture_store(view, &frame) != SF_OK)
+    if (sf_shots_recording(view->shots) && view->options.returned && frame.progress >= 1 &&
+        sf_picture_store(view, &frame) != SF_OK)
         sf_view_record(view);
     return SF_OK;
 }
@@ -83,7 +88,11 @@ static struct sf_renderer_options wanted_options(const struct sf_view *view)
                                         .timing = true,
                                         .frames_kept = SF_FLIGHT + 1,
                                         .shown = true,
-                                        .returned = recording,
+                                        .returned = recording || view->shooting || view->comparing,
+                                        .particles = view->comparing,
+                                        .float_aovs = view->comparing,
+                                        .aovs = view->comparing ? SF_AOV_SMOKE | SF_AOV_DEPTHS : 0,
+                                        .progressive = true,
                                         .inspect = view->looking.name[0] ? view->looking.name : NULL};
 }
 
@@ -92,7 +101,7 @@ static bool same_options(const struct sf_view *view, const struct sf_renderer_op
     const struct sf_renderer_options *has = &view->options;
 
     return wanted->width == has->width && wanted->height == has->height && wanted->returned == has->returned &&
-           strcmp(wanted->inspect ? wanted->inspect : "", view->inspected) == 0;
+           wanted->particles == has->particles && strcmp(wanted->inspect ? wanted->inspect : "", view->inspected) == 0;
 }
 
 static enum sf_status set_options(struct sf_view *view, const struct sf_renderer_options *wanted)
@@ -294,30 +303,44 @@ static enum sf_status draw(struct sf_view *view, struct sf_flight *flight)
     flight->cpu_ms = (float)(sf_now_ns() - begin) * NS_TO_MS;
     flight->record_ms = (float)sf_renderer_record_ns(view->renderer, NULL) * NS_TO_MS;
     view->drawn_frame = view->playback.frame;
+    view->progress = status ? 1 : sf_renderer_progress(view->renderer);
     view->counted.pictures++;
     return status;
 }
 
-/* One picture as the scene says, at full quality, with everything of `wanted` back, handed to `take`. */
-static enum sf_status draw_once(struct sf_view *view, struct sf_renderer_options wanted,
-                                void (*take)(struct sf_view *view, const struct sf_frame *frame))
+/* As the scene says, at full quality, with everything back that `*drawing` (of `shooting` and `comparing`) asks for,
+ * handed to `take`. A picture that takes many steps takes as many turns of the loop. Then, and when it cannot be, it is
+ * `*due` no more. */
+static enum sf_status draw_once(struct sf_view *view, bool *due, bool *drawing,
+                                void (*take)(struct sf_view *view, const struct sf_frame *frame), bool *drawn)
 {
-    const struct sf_renderer_options before = wanted_options(view);
+    struct sf_renderer_options wanted;
     struct sf_flight flight;
     struct sf_frame frame;
     enum sf_status status = view->governor.level ? set_level(view, 0) : SF_OK;
 
-    if (!status)
+    if (!status && !*drawing) {
+        *drawing = true;
+        wanted = wanted_options(view);
         status = set_options(view, &wanted);
-    if (status == SF_ERROR_MEMORY) /* it has been said; everything is as it was */
+    }
+    if (status == SF_ERROR_MEMORY) { /* it has been said; everything is as it was */
+        *due = *drawing = false;
         return SF_OK;
+    }
     if (!status)
         status = draw(view, &flight);
     if (!status)
         status = sf_renderer_wait(view->renderer, flight.ticket, &frame);
+    if (!status && frame.progress < 1) {
+        *drawn = true;
+        return SF_OK;
+    }
+    *due = *drawing = false;
     if (!status)
         take(view, &frame);
-    return status ? status : set_options(view, &before);
+    wanted = wanted_options(view);
+    return status && status != SF_ERROR_DEVICE ? status : set_options(view, &wanted);
 }
 
 static void store(struct sf_view *view, const struct sf_frame *frame)
@@ -325,45 +348,28 @@ static void store(struct sf_view *view, const struct sf_frame *frame)
     sf_picture_store(view, frame);
 }
 
-static enum sf_status shoot(struct sf_view *view)
-{
-    struct sf_renderer_options wanted = wanted_options(view);
-
-    view->shot = false;
-    wanted.returned = true;
-    return draw_once(view, wanted, store);
-}
-
-static enum sf_status compare(struct sf_view *view)
-{
-    struct sf_renderer_options wanted = wanted_options(view);
-
-    view->against.wanted = false; /* when there is no memory for it, that has been said */
-    wanted.returned = wanted.particles = wanted.float_aovs = true;
-    wanted.aovs = SF_AOV_SMOKE | SF_AOV_DEPTHS;
-    return draw_once(view, wanted, sf_against_take);
-}
-
 enum sf_status sf_picture_update(struct sf_view *view, bool *drawn)
 {
     bool there = true;
-    enum sf_status status = update_options(view);
+    enum sf_status status;
 
     *drawn = false;
+    view->comparing = view->comparing && sf_against_due(view); /* it may have been called off */
+    status = update_options(view);
     if (!status)
         status = govern(view);
     /* A way that was begun is gone to its end, also when that is the frame drawn last: the simulation has left it. */
-    if (status || !(view->dirty || view->shot || sf_against_due(view) || view->seek_total > 0 ||
+    if (status || !(view->dirty || view->shot || sf_against_due(view) || view->seek_total > 0 || view->progress < 1 ||
                     view->playback.frame != view->drawn_frame))
         return status;
     status = go_to(view, view->playback.frame, &there);
     if (status || !there)
         return status;
     if (view->shot && !sf_shots_recording(view->shots))
-        return shoot(view);
+        return draw_once(view, &view->shot, &view->shooting, store, drawn);
     if (sf_against_due(view) && !sf_shots_recording(view->shots))
-        return compare(view);
-    view->shot = false; /* a recording has the picture already */
+        return draw_once(view, &view->against.wanted, &view->comparing, sf_against_take, drawn);
+    view->shot = view->shooting = false; /* a recording has the picture already */
     status = sf_picture_collect(view, SF_FLIGHT - 1);
     if (!status)
         status = draw(view, &view->flights[view->flight_count]);
@@ -385,6 +391,7 @@ enum sf_status sf_picture_open(struct sf_view *view)
     view->options.inspect = NULL;
     snprintf(view->inspected, sizeof view->inspected, "%s", view->looking.name);
     view->dirty = true;
+    view->progress = 1;
     return status;
 }
 

@@ -148,7 +148,7 @@ static void pass_time(struct sf_view *view)
     }
     if (sf_shots_recording(view->shots) && view->playback.playing) {
         view->playback.last_ns = now;
-        if (!view->dirty && view->playback.frame == view->drawn_frame)
+        if (!view->dirty && view->progress >= 1 && view->playback.frame == view->drawn_frame)
             sf_playback_seek(&view->playback, view->playback.frame + 1);
     } else {
         sf_playback_tick(&view->playback, now);
@@ -196,8 +196,8 @@ static double rest(const struct sf_view *view, unsigned awake, bool minimised)
     if (minimised)
         return MINIMISED_S;
     due = ui < due ? ui : due;
-    if (awake > 0 || view->dirty || view->settle || view->shot || view->seek_total > 0 || view->hold == SF_HOLD_LOOK ||
-        sf_against_due(view) || sf_picture_pending(view) || view->governor.level > 0)
+    if (awake > 0 || view->dirty || view->settle || view->shot || view->progress < 1 || view->seek_total > 0 ||
+        view->hold == SF_HOLD_LOOK || sf_against_due(view) || sf_picture_pending(view) || view->governor.level > 0)
         return 0;
     if (sf_against_busy(view))
         most = COMPUTING_S;

@@ -126,6 +126,7 @@ struct sf_view {
     unsigned flight_count;
     uint64_t landed_ns; /* when the last one was done; 0: pause */
     uint32_t live, dropped;
+    float progress; /* of the picture drawn last; below 1: it is drawn on */
     float bounds_min[3], bounds_max[3];
     uint32_t drawn_frame;           /* of the newest picture */
     uint64_t seek_done, seek_total; /* steps on a long way; total 0: none */
@@ -135,7 +136,9 @@ struct sf_view {
     bool dirty;  /* the picture must be drawn again */
     bool settle; /* the window must be drawn again, though the picture stays */
     bool closing;
-    bool shot; /* a screenshot is wanted */
+    bool shot;      /* a screenshot is wanted */
+    bool shooting;  /* and its picture is being drawn */
+    bool comparing; /* the picture that is to be compared is being drawn */
     struct sf_looking looking;
     struct sf_against against;
     struct sf_graph_data *graph;     /* graph_data.h; read off at graph->version; sf_graph_data_destroy at the end */

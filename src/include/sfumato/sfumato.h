@@ -176,6 +176,10 @@ struct sf_renderer_options {
     bool shown;
     bool returned;  /* with `shown`: color and depth (and what `aovs` asks for) come back all the same */
     bool particles; /* the list of particles comes back too: 64 bytes for each of the scene's sim.capacity */
+    /* A method that betters its picture step by step ("reference") gives every one of the steps: sf_renderer_render makes
+     * one, and goes on where the last call left the picture unless anything is different now. Else each
+     * sf_renderer_render begins anew (or where sf_renderer_refine ended) and makes all of them. */
+    bool progressive;
 };
 /* The scene and device must outlive it. */
 enum sf_status sf_renderer_create(struct sf_device *device, const struct sf_scene *scene,
@@ -200,8 +204,15 @@ void sf_renderer_set_view(struct sf_renderer *renderer, const struct sf_camera_v
  * stops with SF_ERROR_INTERRUPTED. */
 typedef bool (*sf_progress_fn)(void *user, uint64_t done, uint64_t total);
 enum sf_status sf_renderer_seek(struct sf_renderer *renderer, uint32_t frame, sf_progress_fn progress, void *user);
-/* Queues simulation up to and the picture of frame number `frame` (time frame/fps) and returns; *ticket names it. */
+/* All but the last of the steps in which the method makes the picture of frame `frame` ("reference"; others make it in
+ * one), so that a host can show progress, as above; sf_renderer_render then makes the last one. */
+enum sf_status sf_renderer_refine(struct sf_renderer *renderer, uint32_t frame, sf_progress_fn progress, void *user);
+/* Queues simulation up to and the picture of frame number `frame` (time frame/fps) and returns; *ticket names it. Where
+ * the picture takes many steps, it waits for all but the last two. */
 enum sf_status sf_renderer_render(struct sf_renderer *renderer, uint32_t frame, uint64_t *ticket);
+
+/* How far the picture that was queued last has come, 0..1; 1: it is finished. Below 1 only with `progressive`. */
+float sf_renderer_progress(const struct sf_renderer *renderer);
 
 /* A sphere of smoke as the simulation left it for a frame: docs/scene.md, "Particles". */
 struct sf_frame_particle {
@@ -219,6 +230,7 @@ struct sf_frame_particle {
 struct sf_frame {
     uint32_t frame, width, height;
     double time;                /* s */
+    float progress;             /* sf_renderer_progress, of this one */
     struct sf_camera_view view; /* the eye that it was drawn from */
     const uint16_t *color; /* [height][width][4] linear RGBA half, premultiplied, row 0 on top; NULL when float_color */
     const float *color_float;
@@ -243,7 +255,8 @@ struct sf_frame {
 /* Whether that number is the NaN that stands for "no pass wrote here" in `inspected`, and not one that a pass made. */
 bool sf_frame_unwritten(float value);
 
-/* Waits for the frame. Its pointers hold until frames_kept further frames have been queued. */
+/* Waits for the frame. Its pointers hold until frames_kept further frames have been queued. SF_ERROR_DEVICE when the
+ * method found that the device cannot make the picture right. */
 enum sf_status sf_renderer_wait(struct sf_renderer *renderer, uint64_t ticket, struct sf_frame *frame);
 
 struct sf_pass_timing {
@@ -251,8 +264,8 @@ struct sf_pass_timing {
     uint64_t begin_ns, end_ns;          /* device clock */
     uint64_t bytes_read, bytes_written; /* as the graph says */
 };
-/* After sf_renderer_wait: every pass of that frame in order, simulation first. *timings stays the renderer's, until the
- * next call. */
+/* After sf_renderer_wait: every pass of that frame in order, simulation first; of a picture of many steps those of the
+ * last. *timings stays the renderer's, until the next call. */
 enum sf_status sf_renderer_timings(struct sf_renderer *renderer, uint64_t ticket, const struct sf_pass_timing **timings,
                                    uint32_t *count);
 /* CPU ns that the last sf_renderer_render took to record its passes, and how many they were. */
