@@ -243,11 +243,11 @@ static void draw_control(struct sf_view *view, const struct sf_control *control)
 }
 
 /* What one turns most stands first: the smoke and how it is drawn, where it comes from, its light; then the stage. */
-enum { PLACES = 12 };
+enum { PLACES = 13 };
 static unsigned place_of(const struct sf_control *control)
 {
-    static const char *const names[PLACES - 1] = {"medium", "ramp",   "thick",       "emitters", "forces", "sim",
-                                                  "lights", "shadow", "environment", "output",   "camera"};
+    static const char *const names[PLACES - 1] = {"medium", "ramp",   "thick",  "reference",   "emitters", "forces",
+                                                  "sim",    "lights", "shadow", "environment", "output",   "camera"};
     unsigned place = 0;
 
     while (place < PLACES - 1) {
