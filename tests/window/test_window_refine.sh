@@ -30,8 +30,7 @@ differ window.png turned.png "orbit"
 key Home
 key r
 expect_said 10 'shots/two-lights-001'
-key space
-until_true 60 test -e shots/two-lights-001/two-lights.0003.png
+until_true 60 test -e shots/two-lights-001/0003.png
 key r
 expect_said 10 'recorded '
 key space
@@ -40,7 +39,9 @@ expect_said 5 'copied: sfumato capture'
 finish
 sed -n 's/.*copied: sfumato \(capture .*\)$/\1/p' err | tail -n 1 >command
 eval "set -- $(sed 's/--frames [0-9]*/--frames 2/' command)"
+exists shots/two-lights-001/0002.png
+exists shots/two-lights-001/0003.png
 "$SFUMATO" "$@" -q --overwrite -o recorded.png >out 2>err.copied || { fail "the copied command fails"; cat command err.copied; }
-same recorded.png shots/two-lights-001/two-lights.0002.png 0 "a recorded frame against the copied command"
-[ "$(figure pictures)" -ge 48 ] || fail "only $(figure pictures) steps were drawn"
+same recorded.png shots/two-lights-001/0002.png 0 "a recorded frame against the copied command"
+[ "$(figure pictures)" -ge 64 ] || fail "only $(figure pictures) steps were drawn"
 done_testing
