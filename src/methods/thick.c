@@ -15,6 +15,7 @@
 enum {
     LIST_BYTES_MAX = 64 << 20,
     LIGHT_LIST_BYTES_MAX = 16 << 20,
+    TILE_SPHERES_MAX = 64000,      /* lavapipe ends an invocation's loops after 65,535 turns */
     STORAGE_BYTES_MAX = 128 << 20, /* every device lets a shader see that much of a buffer */
 };
 
@@ -326,6 +327,12 @@ enum sf_status sf_thick_view(struct sf_method_frame *frame, void *state, const s
 
     if (status)
         return status;
+    if (frame->tuning && frame->tuning->software && thick->push.capacity > TILE_SPHERES_MAX)
+        sf_log(
+            log, SF_LOG_WARNING,
+            "thick: on a software device a tile of 16x16 pixels that more than %d particles touch is drawn wrong, and "
+            "sim.capacity allows %u",
+            TILE_SPHERES_MAX, thick->push.capacity);
     add_lists(frame, thick);
     add_prepare(frame, thick);
     add_march(frame, thick);

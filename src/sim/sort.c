@@ -8,9 +8,9 @@ enum {
      * room for what does not grow with the list: in a block 4 x 320 for the counters and 4 x 18 for the rests of
      * slices, in a merge at most 32 x 4 x 21 for finding the splits. */
     TURNS_MAX = 60000,
-    /* Pairs that one lane may have: a block's lane makes two loops over its slice for each digit, a merge's one, by
-       fours. */
-    BLOCK_LANE_MAX = TURNS_MAX / (2 * SF_SORT_PASSES) * SF_SORT_UNROLL,
+    /* Pairs that one lane may have: a block's lane makes two loops over its slice for each digit (counted as if nothing
+     * were unrolled, which is the driver's choice), a merge's one, by fours. */
+    BLOCK_LANE_MAX = TURNS_MAX / (2 * SF_SORT_PASSES),
     MERGE_LANE_MAX = TURNS_MAX * 4,
     SLICE_LOCAL = 256,
     SLICE_ITEMS = 8,

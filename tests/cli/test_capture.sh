@@ -44,9 +44,9 @@ expect 0 "" capture "$still" -s 333x1 -o thin.exr --frames 3
 
 # An image of the graph in place of the picture.
 mkdir look
-expect 0 "" capture "$scene" $small -o look/####.exr -o look/####.png --frames 3-5 --inspect camera.raw --validate
+expect 0 "" capture "$scene" $small -o look/####.exr -o look/####.png --frames 3-5 --inspect light.raw --validate
 only look 6
-expect 2 "did you mean 'camera.raw'" capture "$scene" $small -o look/none.png --inspect camera.rau
+expect 2 "did you mean 'light.raw'" capture "$scene" $small -o look/none.png --inspect light.rau
 expect 2 "light.map" capture "$scene" $small -o look/none.png --inspect nothing
 only look 6
 
