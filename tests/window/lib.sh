@@ -7,7 +7,7 @@ done
 need_device
 
 screen=1280x1024
-Xvfb -displayfd 3 -screen 0 ${screen}x24 -nolisten tcp 3>display 2>/dev/null &
+Xvfb -noreset -displayfd 3 -screen 0 ${screen}x24 -nolisten tcp 3>display 2>/dev/null &
 server=$!
 tries=0
 while [ ! -s display ] && [ $tries -lt 200 ]; do

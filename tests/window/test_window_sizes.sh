@@ -38,7 +38,8 @@ steady
 shot window.png
 [ "$(identify -format %wx%h window.png)" = 311x233 ] || fail "back from full screen it is $(identify -format %wx%h window.png)"
 finish
-[ "$(figure remade)" -ge 8 ] || fail "the swapchain was made anew only $(figure remade) times"
+# A slow device may take two sizes that follow each other as one.
+[ "$(figure remade)" -ge 6 ] || fail "the swapchain was made anew only $(figure remade) times"
 
 # Minimised for 3 seconds while it plays: hardly a turn of the loop, hardly any time of the processor.
 start "$scene" -s 200x150 --bare
