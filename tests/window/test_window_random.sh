@@ -6,11 +6,11 @@ scene=$SF_SOURCE_ROOT/scenes/tiny/all.json
 [ -n "${SEED:-}" ] || SEED=7
 
 # Without a window manager: random clicks would find its menus, and end it.
-kill "$manager"
-wait "$manager" 2>/dev/null
 "$SFUMATO" view --validate -v --report report.json "$scene" --set sim.fps=200 -s 300x220 --present-mode immediate --exit-after 2200 >out 2>err &
 view=$!
 find_window
+kill "$manager"
+wait "$manager" 2>/dev/null
 resident() { awk '/^VmRSS/ { print $2 }' "/proc/$view/status" 2>/dev/null; }
 
 # Deterministic input: awk writes xdotool's script for each round. Frames follow each other fast, so that it takes not too long.
