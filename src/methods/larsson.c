@@ -108,16 +108,8 @@ static void add_prepare(struct sf_method_frame *frame, struct sf_thick *thick)
         {.resource = thick->smoke, .access = SF_ACCESS_COLOR, .binding = 1, .load = SF_LOAD_DISCARD},
         {.resource = thick->smoke_depth, .access = SF_ACCESS_COLOR, .binding = 2, .load = SF_LOAD_DISCARD},
     };
-    sf_thick_pass(frame, thick, prepare, SF_COUNT(prepare),
-                  (struct sf_pass_desc){.name = "larsson.prepare",
-                                        .kind = SF_PASS_RASTER,
-                                        .shader = "thick/tile.vert",
-                                        .fragment = "larsson/prepare.frag",
-                                        .constants = {1, 0},
-                                        .constant_count = 2,
-                                        .indirect = thick->args,
-                                        .indirect_offset = SF_THICK_DRAW_TILES_OFFSET,
-                                        .raster = {.triangle_strip = true}});
+    sf_thick_tile_pass(frame, thick, prepare, SF_COUNT(prepare), false, 0,
+                       (struct sf_pass_desc){.name = "larsson.prepare", .fragment = "larsson/prepare.frag"});
 }
 
 /* Draws the spheres that a surface may cut off (`cut`), or the others, into the near/far/life/depth target. */
@@ -146,9 +138,7 @@ static void add_camera(struct sf_method_frame *frame, struct sf_thick *thick, co
 static void add_march(struct sf_method_frame *frame, struct sf_thick *thick)
 {
     const struct sf_thick_settings *settings = &frame->scene->thick;
-    bool positional = false;
-    for (uint32_t i = 0; i < frame->scene->light_count; i++)
-        positional |= frame->scene->lights[i].kind != SF_LIGHT_DIRECTIONAL;
+    bool positional = sf_thick_positional(frame->scene);
     const struct sf_use uses[] = {
         {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
         {.resource = thick->tiles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
@@ -186,16 +176,10 @@ static void add_over(struct sf_method_frame *frame, struct sf_thick *thick, cons
         {.resource = thick->mask, .access = SF_ACCESS_STORAGE_READ, .binding = 8},
         {.resource = frame->color, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_KEEP},
     };
-    sf_thick_pass(frame, thick, uses, SF_COUNT(uses),
-                  (struct sf_pass_desc){.name = name,
-                                        .kind = SF_PASS_RASTER,
-                                        .shader = "thick/tile.vert",
-                                        .fragment = "larsson/over.frag",
-                                        .constants = {0, 1, thick->push.scale, choice},
-                                        .constant_count = 4,
-                                        .indirect = thick->args,
-                                        .indirect_offset = SF_THICK_DRAW_TILES_OFFSET,
-                                        .raster = {.blend = {SF_BLEND_PREMULTIPLIED}, .triangle_strip = true}});
+    sf_thick_tile_pass(frame, thick, uses, SF_COUNT(uses), true, choice,
+                       (struct sf_pass_desc){.name = name,
+                                             .fragment = "larsson/over.frag",
+                                             .raster = {.blend = {SF_BLEND_PREMULTIPLIED}}});
 }
 
 static void add_aovs(struct sf_method_frame *frame, struct sf_thick *thick)
@@ -219,16 +203,8 @@ static void add_aovs(struct sf_method_frame *frame, struct sf_thick *thick)
          .load = SF_LOAD_CLEAR,
          .clear = {SF_DEPTH_FAR, SF_DEPTH_FAR, 0, 1}},
     };
-    sf_thick_pass(frame, thick, uses, SF_COUNT(uses),
-                  (struct sf_pass_desc){.name = "larsson.aovs",
-                                        .kind = SF_PASS_RASTER,
-                                        .shader = "thick/tile.vert",
-                                        .fragment = "larsson/aovs.frag",
-                                        .constants = {0, 1, thick->push.scale},
-                                        .constant_count = 3,
-                                        .indirect = thick->args,
-                                        .indirect_offset = SF_THICK_DRAW_TILES_OFFSET,
-                                        .raster = {.triangle_strip = true}});
+    sf_thick_tile_pass(frame, thick, uses, SF_COUNT(uses), true, 0,
+                       (struct sf_pass_desc){.name = "larsson.aovs", .fragment = "larsson/aovs.frag"});
 }
 
 enum sf_status sf_larsson_view(struct sf_method_frame *frame, void *state, const struct sf_log *log)

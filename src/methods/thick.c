@@ -192,24 +192,14 @@ static void add_prepare(struct sf_method_frame *frame, struct sf_thick *thick)
         {.resource = thick->smoke, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_DISCARD},
         {.resource = thick->smoke_depth, .access = SF_ACCESS_COLOR, .binding = 1, .load = SF_LOAD_DISCARD},
     };
-    sf_thick_pass(frame, thick, uses, SF_COUNT(uses),
-                  (struct sf_pass_desc){.name = "thick.prepare",
-                                        .kind = SF_PASS_RASTER,
-                                        .shader = "thick/tile.vert",
-                                        .fragment = "thick/prepare.frag",
-                                        .constants = {1, 0},
-                                        .constant_count = 2,
-                                        .indirect = thick->args,
-                                        .indirect_offset = SF_THICK_DRAW_TILES_OFFSET,
-                                        .raster = {.triangle_strip = true}});
+    sf_thick_tile_pass(frame, thick, uses, SF_COUNT(uses), false, 0,
+                       (struct sf_pass_desc){.name = "thick.prepare", .fragment = "thick/prepare.frag"});
 }
 
 static void add_march(struct sf_method_frame *frame, struct sf_thick *thick)
 {
     const struct sf_thick_settings *settings = &frame->scene->thick;
-    bool positional = false;
-    for (uint32_t i = 0; i < frame->scene->light_count; i++)
-        positional |= frame->scene->lights[i].kind != SF_LIGHT_DIRECTIONAL;
+    bool positional = sf_thick_positional(frame->scene);
     const struct sf_use uses[] = {
         {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
         {.resource = thick->tiles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
@@ -284,16 +274,7 @@ static void add_full(struct sf_method_frame *frame, struct sf_thick *thick, cons
     uint32_t count = 8;
     for (uint32_t i = 0; i < target_count; i++)
         uses[count++] = targets[i];
-    desc.kind = SF_PASS_RASTER;
-    desc.shader = "thick/tile.vert";
-    desc.constants[1] = 1;
-    desc.constants[2] = thick->push.scale;
-    desc.constants[3] = choice;
-    desc.constant_count = 4;
-    desc.indirect = thick->args;
-    desc.indirect_offset = SF_THICK_DRAW_TILES_OFFSET;
-    desc.raster.triangle_strip = true;
-    sf_thick_pass(frame, thick, uses, count, desc);
+    sf_thick_tile_pass(frame, thick, uses, count, true, choice, desc);
 }
 
 static void add_over(struct sf_method_frame *frame, struct sf_thick *thick, const char *name, uint32_t choice)

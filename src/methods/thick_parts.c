@@ -102,6 +102,30 @@ void sf_thick_blur(struct sf_method_frame *frame, const struct sf_thick *thick, 
     }
 }
 
+void sf_thick_tile_pass(struct sf_method_frame *frame, const struct sf_thick *thick, const struct sf_use *uses,
+                        uint32_t use_count, bool to_frame, uint32_t choice, struct sf_pass_desc desc)
+{
+    desc.kind = SF_PASS_RASTER;
+    desc.shader = "thick/tile.vert";
+    desc.constants[0] = !to_frame;
+    desc.constants[1] = to_frame;
+    desc.constants[2] = thick->push.scale;
+    desc.constants[3] = choice;
+    desc.constant_count = 4;
+    desc.indirect = thick->args;
+    desc.indirect_offset = SF_THICK_DRAW_TILES_OFFSET;
+    desc.raster.triangle_strip = true;
+    sf_thick_pass(frame, thick, uses, use_count, desc);
+}
+
+bool sf_thick_positional(const struct sf_scene *scene)
+{
+    bool positional = false;
+    for (uint32_t i = 0; i < scene->light_count; i++)
+        positional |= scene->lights[i].kind != SF_LIGHT_DIRECTIONAL;
+    return positional;
+}
+
 sf_resource sf_thick_image(struct sf_graph *graph, const char *name, enum sf_format format, uint32_t width,
                            uint32_t height)
 {

@@ -31,6 +31,12 @@ void sf_thick_fill(const struct sf_method_frame *frame, struct sf_thick *thick);
 /* A pass with the push constants, its uses and the rest as `desc` has them. */
 void sf_thick_pass(struct sf_method_frame *frame, const struct sf_thick *thick, const struct sf_use *uses,
                    uint32_t use_count, struct sf_pass_desc desc);
+/* A raster pass over the listed tiles, drawn as rectangles by thick/tile.vert: over the smoke's image, each wider by a
+ * pixel, or over the frame's (`to_frame`). `choice` as in tile.vert. `desc` has name, fragment shader and blending. */
+void sf_thick_tile_pass(struct sf_method_frame *frame, const struct sf_thick *thick, const struct sf_use *uses,
+                        uint32_t use_count, bool to_frame, uint32_t choice, struct sf_pass_desc desc);
+/* Whether some light stands somewhere, so that its way and strength change along a ray. */
+bool sf_thick_positional(const struct sf_scene *scene);
 sf_resource sf_thick_image(struct sf_graph *graph, const char *name, enum sf_format format, uint32_t width,
                            uint32_t height);
 sf_resource sf_thick_buffer(struct sf_graph *graph, const char *name, uint64_t bytes);
