@@ -3,6 +3,7 @@
 
 #include "base/hash.h"
 #include "methods/thick_parts.h"
+#include "texture/texels.h"
 
 enum {
     OCTAVES = 4,
@@ -84,4 +85,31 @@ void sf_thick_atlas(uint32_t seed, uint32_t size, unsigned char *texels)
 
     for (uint32_t number = 0; number < 4; number++)
         fill_tile(seed + 977 * number, tile, size, texels + (size_t)(number / 2 * tile) * size + number % 2 * tile);
+}
+
+enum sf_status sf_thick_scene_atlas(const struct sf_scene *scene, uint32_t size, const struct sf_log *log,
+                                    unsigned char *texels)
+{
+    const struct sf_atlas *atlas = &scene->atlas;
+    uint32_t tile = size / 2, count = (uint32_t)(atlas->across * atlas->down);
+    struct sf_texture *made = NULL;
+
+    if (atlas->kind == SF_ATLAS_PLAIN) {
+        sf_thick_atlas((uint32_t)scene->sim.seed, size, texels);
+        return SF_OK;
+    }
+    if (atlas->kind == SF_ATLAS_MADE) {
+        struct sf_texture_options options;
+        enum sf_status status;
+
+        sf_scene_atlas_options(atlas, &options);
+        status = sf_texture_create(&options, NULL, NULL, log, &made);
+        if (status != SF_OK)
+            return status;
+    }
+    for (uint32_t number = 0; number < 4; number++)
+        sf_texels_tile_alpha(made ? made : atlas->texture, number % count, tile, size,
+                             texels + (size_t)(number / 2 * tile) * size + number % 2 * tile);
+    sf_texture_destroy(&made);
+    return SF_OK;
 }

@@ -199,10 +199,11 @@ enum sf_status sf_thick_assets_create(struct sf_gpu *gpu, const struct sf_scene 
     unsigned char *texels = malloc((size_t)SF_THICK_ATLAS * SF_THICK_ATLAS);
     if (!texels)
         return sf_fail(log, SF_ERROR_MEMORY, "thick.atlas: out of memory");
-    sf_thick_atlas((uint32_t)scene->sim.seed, SF_THICK_ATLAS, texels);
     struct sf_gpu_image *image = NULL;
-    enum sf_status status = sf_gpu_image_create(gpu, "thick.atlas", SF_FORMAT_R8_UNORM, SF_THICK_ATLAS, SF_THICK_ATLAS,
-                                                1, SF_ACCESS_SAMPLED, texels, &image);
+    enum sf_status status = sf_thick_scene_atlas(scene, SF_THICK_ATLAS, log, texels);
+    if (status == SF_OK)
+        status = sf_gpu_image_create(gpu, "thick.atlas", SF_FORMAT_R8_UNORM, SF_THICK_ATLAS, SF_THICK_ATLAS, 1,
+                                     SF_ACCESS_SAMPLED, texels, &image);
     free(texels);
     *assets = image;
     return status;
@@ -210,7 +211,12 @@ enum sf_status sf_thick_assets_create(struct sf_gpu *gpu, const struct sf_scene 
 
 bool sf_thick_assets_same(const struct sf_scene *a, const struct sf_scene *b)
 {
-    return a->sim.seed == b->sim.seed;
+    const struct sf_atlas *x = &a->atlas, *y = &b->atlas;
+    bool same = x->kind == y->kind && x->across == y->across && x->down == y->down && x->hash == y->hash;
+
+    if (x->kind == SF_ATLAS_MADE)
+        return same && x->smoke == y->smoke && x->size == y->size && x->seed == y->seed;
+    return same && (x->kind == SF_ATLAS_FILE || a->sim.seed == b->sim.seed);
 }
 
 void sf_thick_assets_destroy(void **assets)

@@ -66,5 +66,9 @@ void sf_thick_assets_bind(const struct sf_graph *graph, struct sf_player *player
  * [size][size], 0..255, mean of each tile's disc near 0.6 of its greatest value. `size` is even, at most
  * SF_THICK_ATLAS. The same seed gives the same texels. */
 void sf_thick_atlas(uint32_t seed, uint32_t size, unsigned char *texels);
+/* The atlas that the scene asks for: that one, or the alpha of the first four tiles of smoke that is made or was read (of
+ * fewer, again from the first), each brought to its quarter. */
+enum sf_status sf_thick_scene_atlas(const struct sf_scene *scene, uint32_t size, const struct sf_log *log,
+                                    unsigned char *texels);
 
 #endif

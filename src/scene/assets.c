@@ -137,6 +137,44 @@ static enum sf_status load_environment(struct sf_scene *scene, struct sf_param_r
     return SF_OK;
 }
 
+static enum sf_status load_atlas(struct sf_scene *scene, struct sf_param_reader *reader)
+{
+    struct sf_atlas *atlas = &scene->atlas;
+    struct listener listener = listener_for(reader);
+    struct sf_texture_info info;
+    enum sf_status status;
+    char *path;
+
+    if (atlas->kind != SF_ATLAS_FILE)
+        return SF_OK;
+    if (!(path = sf_path_beside(scene->path, atlas->file)))
+        return out_of_memory(reader);
+    listener.log.user = &listener;
+    sf_param_reader_at(reader, "/atlas/file");
+    status = retell(&listener, sf_texture_load(path, (uint32_t)atlas->across, (uint32_t)atlas->down, SF_TEXTURE_ALPHA,
+                                               &listener.log, &atlas->texture));
+    free(path);
+    if (status != SF_OK)
+        return status;
+    sf_texture_describe(atlas->texture, &info);
+    size_t bytes = (size_t)info.width * info.height * 4 * sizeof(float);
+    atlas->hash = sf_hash_bytes(info.shape, bytes, sf_hash_bytes(info.color, bytes, info.width));
+    stir(scene, atlas->hash);
+    return SF_OK;
+}
+
+void sf_scene_atlas_options(const struct sf_atlas *atlas, struct sf_texture_options *options)
+{
+    static const char *const kinds[] = {"fbm", "turbulence", "cellular", "dispersed"};
+
+    sf_texture_options_init(options);
+    options->kind = kinds[atlas->smoke];
+    options->tiles_x = (uint32_t)atlas->across;
+    options->tiles_y = (uint32_t)atlas->down;
+    options->width = options->height = (uint32_t)atlas->size;
+    options->seed = (uint32_t)atlas->seed;
+}
+
 enum sf_status sf_scene_load_assets(struct sf_scene *scene, struct sf_param_reader *reader)
 {
     enum sf_status status = SF_OK;
@@ -157,5 +195,7 @@ enum sf_status sf_scene_load_assets(struct sf_scene *scene, struct sf_param_read
         else if (emitter->file)
             status = load_list(scene, reader, emitter);
     }
+    if (status == SF_OK)
+        status = load_atlas(scene, reader);
     return status == SF_OK ? load_environment(scene, reader) : status;
 }

@@ -56,6 +56,8 @@ unsigned sf_scene_difference(const struct sf_scene *before, const struct sf_scen
 {
     unsigned found = sf_param_difference(&sf_scene_group, before, after, 0);
 
+    if (before->atlas.hash != after->atlas.hash)
+        found |= SF_REBUILD_ASSETS;
     found |= meshes_difference(before, after) | picture_difference(&before->environment, &after->environment);
     return found ? found | SF_REBUILD_READ : 0;
 }

@@ -215,6 +215,7 @@ void sf_scene_destroy(struct sf_scene **scene)
 {
     if (!scene || !*scene)
         return;
+    sf_texture_destroy(&(*scene)->atlas.texture);
     sf_arena_finish(&(*scene)->arena);
     free(*scene);
     *scene = NULL;

@@ -192,6 +192,19 @@ struct sf_environment {
     float sh[9][3];
 };
 
+enum sf_atlas_kind { SF_ATLAS_PLAIN, SF_ATLAS_MADE, SF_ATLAS_FILE };
+/* The pictures of smoke that particles carry. */
+struct sf_atlas {
+    int32_t kind;
+    int32_t smoke;        /* made: which one of sfumato.h's kinds of texture, in their order there */
+    int32_t across, down; /* tiles */
+    int32_t size;         /* made: px of a tile's side */
+    int32_t seed;         /* made */
+    const char *file;
+    struct sf_texture *texture; /* of the file, with alpha at least; the scene's. NULL for the other kinds */
+    uint64_t hash;              /* of its pixels */
+};
+
 struct sf_ramp_key {
     float at;       /* 0 birth .. 1 death */
     float color[3]; /* multiplies the medium's albedo */
@@ -265,6 +278,7 @@ struct sf_scene {
     struct sf_medium medium;
     struct sf_ramp_key ramp[SF_RAMP_MAX];
     uint32_t ramp_count; /* 0: white */
+    struct sf_atlas atlas;
     struct sf_emitter emitters[SF_EMITTERS_MAX];
     uint32_t emitter_count;
     struct sf_force forces[SF_FORCES_MAX];
@@ -302,6 +316,9 @@ void sf_scene_camera(const struct sf_scene *scene, double time, struct sf_camera
 /* Where an emitter is at a moment of the simulation's clock, and its velocity (zero before the path's first key and
  * after its last). */
 void sf_scene_emitter_at(const struct sf_emitter *emitter, double time, float position[3], float velocity[3]);
+
+/* What sf_texture_create makes the atlas from, when it is to be made. */
+void sf_scene_atlas_options(const struct sf_atlas *atlas, struct sf_texture_options *options);
 
 /* Radiance of the environment seen along a unit vector: what is drawn behind the scene when it is visible. */
 void sf_environment_radiance(const struct sf_environment *environment, const float direction[3], float rgb[3]);

@@ -24,6 +24,28 @@ static const struct sf_param_group ramp_group =
     GROUP("ramp", struct sf_ramp_key, ramp_rows,
           "A colour at a moment of a particle's life; linear between, constant outside.");
 
+static const char *const atlas_kinds[] = {"plain", "made", "file", NULL};
+static const char *const smoke_kinds[] = {"fbm", "turbulence", "cellular", "dispersed", NULL};
+static const struct sf_param atlas_rows[] = {
+    {ROW_ENUM("type", struct sf_atlas, kind, atlas_kinds, SF_ATLAS_PLAIN,
+              "quick noise for thick's detail, smoke made by the program, a file"),
+     .rebuild = SF_REBUILD_ASSETS},
+    {ROW_ENUM("kind", struct sf_atlas, smoke, smoke_kinds, 3, "of smoke: see textures.md"), .only_for = "made",
+     .rebuild = SF_REBUILD_ASSETS},
+    {ROW_INT("across", struct sf_atlas, across, 2, 1, 8, "", "tiles side by side"), .only_for = "made file",
+     .rebuild = SF_REBUILD_ASSETS},
+    {ROW_INT("down", struct sf_atlas, down, 2, 1, 8, "", "tiles one below the other"), .only_for = "made file",
+     .rebuild = SF_REBUILD_ASSETS},
+    {ROW_INT("size", struct sf_atlas, size, 256, 8, 1024, "px", "side of a tile"), .only_for = "made",
+     .rebuild = SF_REBUILD_ASSETS},
+    {ROW_INT("seed", struct sf_atlas, seed, 1, 0, INT32_MAX, "", "another one, other smoke"), .only_for = "made",
+     .rebuild = SF_REBUILD_ASSETS},
+    {ROW_STRING("file", struct sf_atlas, file, "EXR or PNG with alpha, as sfumato texture writes them"),
+     .only_for = "file", .required = true, .rebuild = SF_REBUILD_ASSETS},
+};
+static const struct sf_param_group atlas_group =
+    GROUP("atlas", struct sf_atlas, atlas_rows, "The pictures of smoke that particles carry.");
+
 static const char *const environment_kinds[] = {"sky", "color", "latlong", "cube", NULL};
 static const struct sf_param environment_rows[] = {
     {ROW_ENUM("type", struct sf_environment, kind, environment_kinds, SF_ENVIRONMENT_SKY,
@@ -62,7 +84,7 @@ static const struct sf_param_group environment_group =
 static const struct sf_param sim_rows[] = {
     {ROW_INT("seed", struct sf_sim_settings, seed, 1, 0, INT32_MAX, "",
              "of all randomness: the same seed, the same bits"),
-     .rebuild = SF_REBUILD_SIM | SF_REBUILD_ASSETS}, /* the atlas of thick is made from it */
+     .rebuild = SF_REBUILD_SIM | SF_REBUILD_ASSETS}, /* the plain atlas is made from it */
     {ROW_INT("capacity", struct sf_sim_settings, capacity, 4096, 1, SF_PARTICLES_MAX, "particles",
              "live particles at most; what is emitted beyond is lost"),
      .rebuild = SF_REBUILD_SIM | SF_REBUILD_GRAPH},
@@ -182,6 +204,7 @@ static const struct sf_param scene_rows[] = {
               "solid things")},
     {ROW_OBJECT("medium", medium, medium_group, "the smoke's matter")},
     {ROW_LIST("ramp", struct sf_scene, ramp, ramp_count, ramp_group, 0, SF_RAMP_MAX, "colour over a particle's life")},
+    {ROW_OBJECT("atlas", atlas, atlas_group, "pictures of smoke")},
     {ROW_LIST("emitters", struct sf_scene, emitters, emitter_count, sf_scene_emitter_group, 0, SF_EMITTERS_MAX,
               "where smoke comes from"),
      .rebuild = SF_REBUILD_SIM},

@@ -15,5 +15,9 @@ enum sf_texels_plane {
  * are 1; in 16-bit floats (RGBA16F) all is as it is. */
 void sf_texels_rgba8(const struct sf_texture *texture, enum sf_texels_plane plane, uint8_t *texels);
 void sf_texels_rgba16f(const struct sf_texture *texture, enum sf_texels_plane plane, uint16_t *texels);
+/* Alpha alone (R8_UNORM) of tile number `tile`, brought to `size` by `size` texels, rows `pitch` apart: the mean over a
+ * texel where there are fewer of them, linear between where there are more. */
+void sf_texels_tile_alpha(const struct sf_texture *texture, uint32_t tile, uint32_t size, uint32_t pitch,
+                          uint8_t *texels);
 
 #endif

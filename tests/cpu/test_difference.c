@@ -6,6 +6,7 @@
 
 #include "base/array.h"
 #include "base/hash.h"
+#include "methods/thick.h"
 #include "params/params.h"
 #include "render/assemble.h"
 #include "scene/table.h"
@@ -81,6 +82,11 @@ static void test_single_values(void **state)
         {"latlong", "environment.rotation=91", READ},
         {"latlong", "environment.type=latlong", 0},
         {"mesh", "objects.1.rotation=0,26,0", SIM},
+        {"atlas", "atlas.seed=8", ASSETS},
+        {"atlas", "atlas.kind=cellular", ASSETS},
+        {"atlas", "atlas.type=plain", ASSETS},
+        {"atlas-file", "atlas.down=1", ASSETS},
+        {"atlas-file", "atlas.file=../assets/cube-nx.png", ASSETS},
     };
 
     (void)state;
@@ -222,6 +228,33 @@ static void test_pictures(void **state)
     sf_scene_destroy(&after);
 }
 
+/* Of the same name and size, but another picture. */
+static void test_atlas_file(void **state)
+{
+    static const char *const text = "{\"atlas\":{\"type\":\"file\",\"file\":\"a.exr\"}}";
+    struct sf_texture_options options;
+    struct sf_scene *scenes[3];
+
+    (void)state;
+    sf_texture_options_init(&options);
+    options.width = options.height = 8;
+    for (uint32_t i = 0; i < 3; i++) {
+        const struct sf_exr_options exr = {.compression = "zip", .half = true};
+        struct sf_texture *texture = NULL;
+
+        options.density = i < 2 ? 3 : 4;
+        assert_int_equal(sf_texture_create(&options, NULL, NULL, NULL, &texture), SF_OK);
+        assert_int_equal(sf_texture_write_exr(texture, "a.exr", SF_TEXTURE_ALL, &exr, NULL), SF_OK);
+        sf_texture_destroy(&texture);
+        scenes[i] = parse(text);
+    }
+    assert_int_equal(sf_scene_difference(scenes[0], scenes[1]), 0);
+    assert_true(scenes[0]->hash == scenes[1]->hash && scenes[1]->hash != scenes[2]->hash);
+    assert_int_equal(sf_scene_difference(scenes[1], scenes[2]), ASSETS);
+    for (int i = 0; i < 3; i++)
+        sf_scene_destroy(&scenes[i]);
+}
+
 /* ---- the table against the renderer ---- */
 
 /* All that a change could make anew, as hashes. */
@@ -357,8 +390,14 @@ static void trace_assets(const struct sf_scene *scene, uint64_t *hash)
     if (sf_scene_shows_picture(scene))
         stir(hash, environment->pixels, (size_t)environment->width * environment->height * 3 * sizeof(float));
     STIR(hash, scene->method);
-    if (scene->method == SF_METHOD_THICK)
-        STIR(hash, scene->sim.seed); /* the atlas */
+    if (scene->method == SF_METHOD_THICK && scene->atlas.kind == SF_ATLAS_PLAIN) {
+        STIR(hash, scene->sim.seed);
+    } else if (scene->method == SF_METHOD_THICK) {
+        unsigned char texels[32 * 32];
+
+        assert_int_equal(sf_thick_scene_atlas(scene, 32, NULL, texels), SF_OK);
+        STIR(hash, texels);
+    }
 }
 
 static struct trace trace_of(const struct sf_scene *scene)
@@ -471,7 +510,8 @@ static void write_panorama(void)
 static void try_control(const char *path, const struct sf_scene *scene, const struct trace *trace,
                         const struct sf_control *from)
 {
-    const char *const files[] = {"../assets/pyramid.gltf", "../assets/house.obj", "../assets/tiny.csv", panorama};
+    const char *const files[] = {"../assets/pyramid.gltf", "../assets/house.obj", "../assets/tiny.csv", panorama,
+                                 "../assets/cube-nx.png"};
     struct sf_control control = *from;
 
     if (control.kind == SF_CONTROL_TEXT) {
@@ -526,7 +566,9 @@ static void test_every_row_has_the_bits_that_it_needs(void **state)
                   {"cube", "camera", "method=thick"},
                   {"sphere", "", "method=thick"},
                   {"list-csv", "", "method=thick"},
-                  {"list-ply", "", "method=thick"}};
+                  {"list-ply", "", "method=thick"},
+                  {"atlas", "atlas", "method=thick"},
+                  {"atlas-file", "atlas", "method=thick"}};
 
     (void)state;
     write_panorama();
@@ -561,6 +603,7 @@ int main(void)
         cmocka_unit_test(test_lists),
         cmocka_unit_test(test_files_count_by_their_contents),
         cmocka_unit_test(test_pictures),
+        cmocka_unit_test(test_atlas_file),
         cmocka_unit_test(test_every_row_has_the_bits_that_it_needs),
     };
     return cmocka_run_group_tests(tests, scratch_enter, scratch_leave);

@@ -347,12 +347,51 @@ static void test_texels(void **state)
     sf_texture_destroy(&texture);
 }
 
+/* One tile's alpha: as it is at its own size, the mean of squares at half of it, and between its texels at twice. */
+static void test_tile_alpha(void **state)
+{
+    struct sf_texture *texture = make();
+    struct sf_texture_info info = kit_info(texture);
+    uint8_t texels[2 * SIDE * 2 * SIDE];
+
+    (void)state;
+    for (uint32_t tile = 0; tile < 4; tile++) {
+        sf_texels_tile_alpha(texture, tile, SIDE, 2 * SIDE, texels);
+        for (uint32_t y = 0; y < SIDE; y++)
+            for (uint32_t x = 0; x < SIDE; x++)
+                assert_float_equal(texels[y * 2 * SIDE + x] / 255.0, kit_texel(&info, info.color, tile, x, y)[3],
+                                   0.51 / 255);
+        sf_texels_tile_alpha(texture, tile, SIDE / 2, SIDE / 2, texels);
+        for (uint32_t y = 0; y < SIDE / 2; y++)
+            for (uint32_t x = 0; x < SIDE / 2; x++) {
+                double sum = 0;
+
+                for (uint32_t i = 0; i < 4; i++)
+                    sum += (double)kit_texel(&info, info.color, tile, 2 * x + i % 2, 2 * y + i / 2)[3];
+                assert_float_equal(texels[y * SIDE / 2 + x] / 255.0, sum / 4, 0.51 / 255);
+            }
+        sf_texels_tile_alpha(texture, tile, 2 * SIDE, 2 * SIDE, texels);
+        for (uint32_t y = 0; y + 1 < SIDE; y++)
+            for (uint32_t x = 0; x < SIDE; x++) {
+                double here = kit_texel(&info, info.color, tile, x, y)[3],
+                       below = kit_texel(&info, info.color, tile, x, y + 1)[3];
+                double left = kit_texel(&info, info.color, tile, x > 0 ? x - 1 : 0, y)[3],
+                       left_below = kit_texel(&info, info.color, tile, x > 0 ? x - 1 : 0, y + 1)[3];
+
+                assert_float_equal(texels[(2 * y + 1) * 2 * SIDE + 2 * x] / 255.0,
+                                   0.75 * (0.75 * here + 0.25 * below) + 0.25 * (0.75 * left + 0.25 * left_below),
+                                   0.51 / 255);
+            }
+    }
+    sf_texture_destroy(&texture);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_exr),     cmocka_unit_test(test_exr_channels), cmocka_unit_test(test_png),
         cmocka_unit_test(test_bad_exr), cmocka_unit_test(test_lenient),      cmocka_unit_test(test_bad_pair),
-        cmocka_unit_test(test_whole),   cmocka_unit_test(test_texels),
+        cmocka_unit_test(test_whole),   cmocka_unit_test(test_texels),       cmocka_unit_test(test_tile_alpha),
     };
 
     return cmocka_run_group_tests(tests, scratch_enter, scratch_leave);
