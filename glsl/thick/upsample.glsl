@@ -20,8 +20,8 @@ vec4 upsample_carefully(sampler2D image, vec2 frame_pixel)
     ivec2 right = ivec2(high.x, low.y), down = ivec2(low.x, high.y);
     vec4 bilinear = vec4((1.0 - part.x) * (1.0 - part.y), part.x * (1.0 - part.y), (1.0 - part.x) * part.y, part.x * part.y);
     float here = min(texelFetch(scene_depth, ivec2(frame_pixel), 0).r, behind.x);
-    vec4 there = vec4(texelFetch(smoke_depth, low, 0).r, texelFetch(smoke_depth, right, 0).r, texelFetch(smoke_depth, down, 0).r,
-                      texelFetch(smoke_depth, high, 0).r); // depths behind all smoke are stored as behind.x
+    vec4 there = min(vec4(texelFetch(smoke_depth, low, 0).r, texelFetch(smoke_depth, right, 0).r, texelFetch(smoke_depth, down, 0).r,
+                          texelFetch(smoke_depth, high, 0).r), behind.x);
     // In shares of the smoke's extent: ground that slants away behind the smoke stays smooth, an object within it keeps its edge.
     vec4 apart = (there - here) / behind.y;
     vec4 weight = (bilinear + 1e-3) / (0.02 + apart * apart);

@@ -1,7 +1,18 @@
 #include "methods/method.h"
+#include "methods/billboard.h"
 #include "methods/larsson.h"
 #include "methods/reference.h"
+#include "methods/sprites.h"
 #include "methods/thick.h"
+
+/* A method of billboards: `view_of` draws its particles. */
+#define BILLBOARDS(name_of, doc_of, view_of)                                                                           \
+    {                                                                                                                  \
+        .name = name_of, .doc = doc_of, .light = sf_billboard_light, .view = view_of, .update = sf_billboard_update,   \
+        .state_bytes = sizeof(struct sf_billboards), .create_assets = sf_thick_assets_create,                          \
+        .destroy_assets = sf_thick_assets_destroy, .same_assets = sf_thick_assets_same,                                \
+        .bind_assets = sf_thick_assets_bind,                                                                           \
+    }
 
 const struct sf_method_row sf_methods[] = {
     [SF_METHOD_NONE] = {.name = "none", .doc = "the scene without smoke"},
@@ -51,5 +62,13 @@ const struct sf_method_row sf_methods[] = {
             .same_assets = sf_reference_assets_same,
             .bind_assets = sf_reference_assets_bind,
         },
+    [SF_METHOD_HARD] =
+        BILLBOARDS("hard", "flat billboards, cut off where they meet the scene (METHODS B1)", sf_hard_view),
+    [SF_METHOD_SOFT] = BILLBOARDS(
+        "soft", "flat billboards that fade in proportion to the scene's distance (METHODS B2)", sf_soft_view),
+    [SF_METHOD_CONTRAST] =
+        BILLBOARDS("soft-contrast", "the same with a fade that is steep in its middle (METHODS B3)", sf_contrast_view),
+    [SF_METHOD_SPHERICAL] = BILLBOARDS(
+        "spherical", "spheres, denser in the middle, cut off by scene and near plane (METHODS B4)", sf_spherical_view),
 };
 const uint32_t sf_method_count = sizeof sf_methods / sizeof sf_methods[0];

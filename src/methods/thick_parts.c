@@ -170,6 +170,15 @@ void sf_thick_fit(struct sf_method_frame *frame, struct sf_thick *thick, bool ar
                                         .groups = {1, 1, 1}});
 }
 
+sf_resource sf_thick_atlas_resource(struct sf_graph *graph)
+{
+    return sf_graph_image(graph, &(struct sf_image_desc){.name = "thick.atlas",
+                                                         .format = SF_FORMAT_R8_UNORM,
+                                                         .lifetime = SF_IMPORTED,
+                                                         .size = {.width = SF_THICK_ATLAS, .height = SF_THICK_ATLAS},
+                                                         .outside = SF_ACCESS_SAMPLED});
+}
+
 enum sf_status sf_thick_targets(struct sf_method_frame *frame, struct sf_thick *thick, const struct sf_log *log)
 {
     struct sf_graph *graph = frame->graph;
@@ -181,12 +190,7 @@ enum sf_status sf_thick_targets(struct sf_method_frame *frame, struct sf_thick *
                        width, height, SF_THICK_TILES_MAX);
     thick->smoke = sf_thick_image(graph, "smoke", SF_FORMAT_RGBA16F, width, height);
     thick->smoke_depth = sf_thick_image(graph, "smoke.scene_depth", SF_FORMAT_R32F, width, height);
-    thick->atlas =
-        sf_graph_image(graph, &(struct sf_image_desc){.name = "thick.atlas",
-                                                      .format = SF_FORMAT_R8_UNORM,
-                                                      .lifetime = SF_IMPORTED,
-                                                      .size = {.width = SF_THICK_ATLAS, .height = SF_THICK_ATLAS},
-                                                      .outside = SF_ACCESS_SAMPLED});
+    thick->atlas = sf_thick_atlas_resource(graph);
     thick->mask = sf_thick_buffer(graph, "thick.mask", 4ull * tiles);
     thick->tiles = sf_thick_buffer(graph, "thick.tile_list", 4ull * tiles);
     sf_thick_empty(frame, thick, "thick.unmark", thick->mask);

@@ -55,7 +55,8 @@ enum sf_status sf_thick_targets(struct sf_method_frame *frame, struct sf_thick *
 /* Fills a buffer of a word a tile with 0. */
 void sf_thick_empty(struct sf_method_frame *frame, const struct sf_thick *thick, const char *name, sf_resource buffer);
 
-/* The detail atlas as a device object, see method.h. */
+/* The detail atlas: as the graph has it, and as a device object, see method.h. */
+sf_resource sf_thick_atlas_resource(struct sf_graph *graph);
 enum sf_status sf_thick_assets_create(struct sf_gpu *gpu, const struct sf_scene *scene, const struct sf_log *log,
                                       void **assets);
 void sf_thick_assets_destroy(void **assets);

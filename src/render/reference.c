@@ -35,6 +35,10 @@ static const char *foreign_medium(int32_t method)
     case SF_METHOD_THICK:
     case SF_METHOD_LARSSON:
     case SF_METHOD_REFERENCE:
+    case SF_METHOD_HARD:
+    case SF_METHOD_SOFT:
+    case SF_METHOD_CONTRAST:
+    case SF_METHOD_SPHERICAL:
         return NULL;
     }
     return "a medium of its own";

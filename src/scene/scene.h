@@ -212,7 +212,16 @@ struct sf_ramp_key {
 
 /* ---- settings: the groups of the parameter table that are not lists ---- */
 
-enum sf_method { SF_METHOD_NONE, SF_METHOD_THICK, SF_METHOD_LARSSON, SF_METHOD_REFERENCE };
+enum sf_method {
+    SF_METHOD_NONE,
+    SF_METHOD_THICK,
+    SF_METHOD_LARSSON,
+    SF_METHOD_REFERENCE,
+    SF_METHOD_HARD,
+    SF_METHOD_SOFT,
+    SF_METHOD_CONTRAST,
+    SF_METHOD_SPHERICAL,
+};
 enum sf_resolution { SF_RESOLUTION_FULL, SF_RESOLUTION_HALF, SF_RESOLUTION_QUARTER };
 enum sf_thick_placement { SF_PLACEMENT_EQUAL, SF_PLACEMENT_UNIFORM, SF_PLACEMENT_JITTERED };
 enum sf_tone { SF_TONE_LINEAR, SF_TONE_REINHARD, SF_TONE_ACES, SF_TONE_NEUTRAL };
@@ -233,7 +242,8 @@ struct sf_shadow_settings {
     float softness;   /* px: sigma of its blur */
     float exponent;   /* of the map */
 };
-/* Of thick and of thick-larsson, but for placement and light_slices, which are of thick alone. */
+/* Of thick and of thick-larsson, but for placement and light_slices, which are of thick alone. Methods of billboards read
+ * resolution, octaves, detail, detail_scale, ambient and the shadows. */
 struct sf_thick_settings {
     int32_t resolution;   /* of the smoke's passes, against the frame */
     int32_t steps;        /* samples along the camera ray */
@@ -265,6 +275,19 @@ struct sf_reference_settings {
     bool ground_shadow;  /* smoke shadows the scene */
 };
 
+/* Of all methods of billboards; they take from thick what is common to both. */
+struct sf_billboard_settings {
+    int32_t upsample; /* enum sf_upsample */
+    float density;    /* times the medium's extinction */
+    float near_fade;  /* radii before the near plane in which a flat billboard fades */
+    bool self_shadow; /* particles shadow each other */
+};
+enum sf_upsample { SF_UPSAMPLE_DEPTH, SF_UPSAMPLE_PLAIN };
+struct sf_soft_settings {
+    float distance; /* m of the fade; 0: the particle's radius */
+    float power;    /* of soft-contrast */
+};
+
 struct sf_scene {
     const char *path; /* where it came from */
     uint64_t hash;    /* of the canonical JSON after --set, plus the bytes of the files that it names */
@@ -291,6 +314,8 @@ struct sf_scene {
     struct sf_thick_settings thick;
     struct sf_larsson_settings larsson;
     struct sf_reference_settings reference;
+    struct sf_billboard_settings billboard;
+    struct sf_soft_settings soft;
     /* The values as they were given, before directions are normalised, emitters take the medium's extinction, and files
      * are read: what controls show. NULL in a scene that was not loaded. */
     const struct sf_scene *stated;

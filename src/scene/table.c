@@ -158,7 +158,8 @@ static const struct sf_param thick_rows[] = {
 };
 static const struct sf_param_group thick_group =
     GROUP("thick", struct sf_thick_settings, thick_rows,
-          "The methods thick and thick-larsson: thick smoke with volumetric lighting.");
+          "The methods thick and thick-larsson, thick smoke with volumetric lighting; and for the methods of "
+          "billboards what they share with these.");
 
 static const struct sf_param larsson_rows[] = {
     {ROW_FLOAT("blur", struct sf_larsson_settings, blur, 4, 0, 38, "px",
@@ -193,10 +194,37 @@ static const struct sf_param_group reference_group =
     GROUP("reference", struct sf_reference_settings, reference_rows,
           "The method reference: the integral itself, to any exactness, slowly.");
 
+static const char *const upsamples[] = {"depth", "plain", NULL};
+static const struct sf_param billboard_rows[] = {
+    {ROW_ENUM("upsample", struct sf_billboard_settings, upsample, upsamples, SF_UPSAMPLE_DEPTH,
+              "how reduced smoke is taken up: with a look at the depth of edges, or without"),
+     .rebuild = SF_REBUILD_GRAPH},
+    {ROW_FLOAT("density", struct sf_billboard_settings, density, 1, 0, 100, "",
+               "multiplies the medium's extinction: 1 is the smoke that thick draws")},
+    {ROW_FLOAT("near_fade", struct sf_billboard_settings, near_fade, 1, 0, 100, "radii",
+               "before the near plane, in which a flat billboard fades; 0: it pops")},
+    {ROW_BOOL("self_shadow", struct sf_billboard_settings, self_shadow, 1, "particles cast shadows on each other"),
+     .rebuild = SF_REBUILD_GRAPH},
+};
+static const struct sf_param_group billboard_group =
+    GROUP("billboard", struct sf_billboard_settings, billboard_rows,
+          "What all methods of billboards share, beside resolution, octaves, detail, detail_scale, ambient, "
+          "scene_shadow and ground_shadow of thick.");
+
+static const struct sf_param soft_rows[] = {
+    {ROW_FLOAT("distance", struct sf_soft_settings, distance, 0, 0, 1000, "m",
+               "to the scene behind it, within which a particle fades; 0: its radius")},
+    {ROW_FLOAT("power", struct sf_soft_settings, power, 2, 1, 16, "",
+               "of the fade of soft-contrast: 1 is linear, more is steeper in the middle")},
+};
+static const struct sf_param_group soft_group =
+    GROUP("soft", struct sf_soft_settings, soft_rows, "The methods soft and soft-contrast.");
+
 #define ROW_OBJECT(k, f, of, text)                                                                                     \
     .key = k, .type = SF_PARAM_OBJECT, .offset = offsetof(struct sf_scene, f), .group = &of, .unit = "", .doc = text
 
-static const char *const methods[] = {"none", "thick", "thick-larsson", "reference", NULL};
+static const char *const methods[] = {"none", "thick",         "thick-larsson", "reference", "hard",
+                                      "soft", "soft-contrast", "spherical",     NULL};
 static const struct sf_param scene_rows[] = {
     {ROW_OBJECT("camera", camera, sf_scene_camera_group, "the eye")},
     {ROW_LIST("lights", struct sf_scene, lights, light_count, sf_scene_light_group, 0, SF_LIGHTS_MAX, "lamps")},
@@ -220,6 +248,8 @@ static const struct sf_param scene_rows[] = {
     {ROW_OBJECT("thick", thick, thick_group, "the methods thick and thick-larsson")},
     {ROW_OBJECT("larsson", larsson, larsson_group, "the method thick-larsson")},
     {ROW_OBJECT("reference", reference, reference_group, "the method reference")},
+    {ROW_OBJECT("billboard", billboard, billboard_group, "the methods of billboards")},
+    {ROW_OBJECT("soft", soft, soft_group, "the methods soft and soft-contrast")},
 };
 const struct sf_param_group sf_scene_group =
     GROUP("scene", struct sf_scene, scene_rows, "The outermost object of a scene file.");

@@ -568,7 +568,9 @@ static void test_every_row_has_the_bits_that_it_needs(void **state)
                   {"list-csv", "", "method=thick"},
                   {"list-ply", "", "method=thick"},
                   {"atlas", "atlas", "method=thick"},
-                  {"atlas-file", "atlas", "method=thick"}};
+                  {"atlas-file", "atlas", "method=thick"},
+                  {"all", "billboard", "method=hard"},
+                  {"all", "soft", "method=soft-contrast"}};
 
     (void)state;
     write_panorama();

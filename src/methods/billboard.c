@@ -1,0 +1,246 @@
+#include "methods/billboard.h"
+
+#include <stddef.h>
+#include "methods/larsson.h"
+#include "shared/frame.h"
+#include "shared/particle.h"
+
+_Static_assert(sizeof(struct sf_billboard_push) <= SF_PUSH_BYTES_MAX, "push constants");
+_Static_assert(sizeof(struct sf_billboard) == 96, "as GLSL has it");
+_Static_assert(offsetof(struct sf_billboards, thick) == 0, "the state of the lights' part");
+
+/* The method's settings, as its shader has them. */
+static void fill_own(const struct sf_scene *scene, float own[4])
+{
+    own[0] = scene->soft.distance;
+    own[1] = scene->soft.power;
+}
+
+void sf_billboard_update(const struct sf_method_frame *frame, void *state)
+{
+    struct sf_billboards *billboards = state;
+    const struct sf_billboard_settings *settings = &frame->scene->billboard;
+    const struct sf_thick_settings *thick = &frame->scene->thick;
+    uint32_t scale = sf_thick_scale(frame->scene);
+
+    sf_larsson_update(frame, &billboards->thick);
+    billboards->push = (struct sf_billboard_push){
+        .width = sf_divide_up(frame->width, scale),
+        .height = sf_divide_up(frame->height, scale),
+        .scale = scale,
+        .density = settings->density,
+        .detail = thick->detail,
+        .detail_scale = thick->detail_scale,
+        .ambient = thick->ambient,
+        .near_fade = settings->near_fade,
+    };
+    fill_own(frame->scene, billboards->push.own);
+}
+
+enum sf_status sf_billboard_light(struct sf_method_frame *frame, void *state, const struct sf_log *log)
+{
+    struct sf_billboards *billboards = state;
+
+    sf_billboard_update(frame, billboards);
+    if (frame->scene->thick.ground_shadow && frame->scene->light_count > 0)
+        return sf_larsson_light(frame, &billboards->thick, log);
+    sf_thick_fit(frame, &billboards->thick, false);
+    return SF_OK;
+}
+
+static void add_pass(struct sf_method_frame *frame, const struct sf_billboards *billboards, const struct sf_use *uses,
+                     uint32_t use_count, struct sf_pass_desc desc)
+{
+    desc.uses = uses;
+    desc.use_count = use_count;
+    desc.push = &billboards->push;
+    desc.push_bytes = sizeof billboards->push;
+    sf_graph_pass(frame->graph, &desc);
+}
+
+/* The particles back to front, and lit. */
+static void add_list(struct sf_method_frame *frame, struct sf_billboards *billboards)
+{
+    const struct sf_scene *scene = frame->scene;
+    uint32_t capacity = (uint32_t)scene->sim.capacity;
+    bool narrow = frame->tuning && frame->tuning->subgroup_size < SF_THICK_TURN;
+
+    sf_sort_tune(frame->tuning, capacity, &billboards->sort_tuning);
+    sf_resource pairs =
+        sf_thick_buffer(frame->graph, "billboard.pairs", sf_sort_bytes(&billboards->sort_tuning, capacity));
+    const struct sf_use keys[] = {
+        {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
+        {.resource = frame->particles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
+        {.resource = frame->counts, .access = SF_ACCESS_STORAGE_READ, .binding = 2},
+        {.resource = pairs, .access = SF_ACCESS_STORAGE_WRITE, .binding = 3},
+    };
+    sf_graph_pass(frame->graph, &(struct sf_pass_desc){.name = "billboard.keys",
+                                                       .kind = SF_PASS_COMPUTE,
+                                                       .uses = keys,
+                                                       .use_count = SF_COUNT(keys),
+                                                       .shader = "billboard/keys.comp",
+                                                       .indirect = frame->counts,
+                                                       .indirect_offset = SF_COUNTS_DISPATCH_OFFSET});
+    sf_resource order = sf_sort_declare(frame->graph,
+                                        &(struct sf_sort_desc){.name = "billboard.sort",
+                                                               .capacity = capacity,
+                                                               .pairs = pairs,
+                                                               .count = frame->counts,
+                                                               .tuning = &billboards->sort_tuning},
+                                        &billboards->sort);
+
+    billboards->list =
+        sf_thick_buffer(frame->graph, "billboard.list", (uint64_t)capacity * sizeof(struct sf_billboard));
+    const struct sf_use shade[] = {
+        {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
+        {.resource = frame->particles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
+        {.resource = frame->counts, .access = SF_ACCESS_STORAGE_READ, .binding = 2},
+        {.resource = order, .access = SF_ACCESS_STORAGE_READ, .binding = 3},
+        {.resource = frame->shadow_map, .access = SF_ACCESS_SAMPLED, .binding = 4},
+        {.resource = billboards->thick.args, .access = SF_ACCESS_UNIFORM, .binding = 5},
+        {.resource = billboards->list, .access = SF_ACCESS_STORAGE_WRITE, .binding = 6},
+    };
+    add_pass(frame, billboards, shade, SF_COUNT(shade),
+             (struct sf_pass_desc){.name = "billboard.shade",
+                                   .kind = SF_PASS_COMPUTE,
+                                   .shader = "billboard/shade.comp",
+                                   .constants = {scene->light_count, scene->billboard.self_shadow,
+                                                 scene->thick.scene_shadow, scene->ramp_count > 0,
+                                                 narrow ? 4 : SF_THICK_TURN, (uint32_t)scene->thick.octaves},
+                                   .constant_count = 6,
+                                   .indirect = frame->counts,
+                                   .indirect_offset = SF_COUNTS_DISPATCH_OFFSET});
+}
+
+/* Where the smoke is drawn: its image, and the scene's depth at that size. */
+static void add_targets(struct sf_method_frame *frame, struct sf_billboards *billboards)
+{
+    uint32_t width = billboards->push.width, height = billboards->push.height;
+
+    /* A layer more is a rounding more: 32 bits. */
+    billboards->smoke = sf_thick_image(frame->graph, "smoke", SF_FORMAT_RGBA32F, width, height);
+    billboards->smoke_depth = frame->depth;
+    if (billboards->push.scale == 1)
+        return;
+    billboards->smoke_depth = sf_thick_image(frame->graph, "smoke.scene_depth", SF_FORMAT_R32F, width, height);
+    const struct sf_use uses[] = {
+        {.resource = frame->depth, .access = SF_ACCESS_SAMPLED, .binding = 0},
+        {.resource = billboards->smoke_depth, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_DISCARD},
+    };
+    add_pass(frame, billboards, uses, SF_COUNT(uses),
+             (struct sf_pass_desc){.name = "billboard.depth",
+                                   .kind = SF_PASS_RASTER,
+                                   .shader = "scene/screen.vert",
+                                   .fragment = "billboard/depth.frag",
+                                   .vertices = 3,
+                                   .instances = 1});
+}
+
+enum { DRAW_USES = 12 };
+
+static void add_draw(struct sf_method_frame *frame, struct sf_billboards *billboards,
+                     const struct sf_billboard_look *look, struct sf_use target)
+{
+    bool detail = frame->scene->thick.detail > 0;
+    struct sf_use uses[DRAW_USES] = {
+        {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
+        {.resource = billboards->list, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
+        {.resource = billboards->smoke_depth, .access = SF_ACCESS_SAMPLED, .binding = 2},
+        {.resource = billboards->thick.atlas, .access = SF_ACCESS_SAMPLED, .binding = 3},
+    };
+    uint32_t count = 4;
+
+    for (uint32_t i = 0; i < look->use_count; i++)
+        uses[count++] = look->uses[i];
+    uses[count++] = target;
+    struct sf_pass_desc desc = {
+        .name = look->name,
+        .kind = SF_PASS_RASTER,
+        .shader = "billboard/quad.vert",
+        .fragment = look->fragment,
+        .constants = {look->whole, detail},
+        .constant_count = 2 + look->constant_count,
+        .indirect = frame->counts,
+        .indirect_offset = SF_COUNTS_DRAW_OFFSET,
+        .raster = {.blend = {look->blend ? look->blend : SF_BLEND_PREMULTIPLIED}, .triangle_strip = true}};
+    for (uint32_t i = 0; i < look->constant_count; i++)
+        desc.constants[2 + i] = look->constants[i];
+    add_pass(frame, billboards, uses, count, desc);
+}
+
+/* A pass over the rectangle of the frame that smoke may touch. */
+static void add_over(struct sf_method_frame *frame, struct sf_billboards *billboards, const struct sf_use *targets,
+                     uint32_t target_count, struct sf_pass_desc desc)
+{
+    struct sf_use uses[DRAW_USES] = {
+        {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
+        {.resource = billboards->thick.args, .access = SF_ACCESS_UNIFORM, .binding = 1},
+        {.resource = billboards->smoke, .access = SF_ACCESS_SAMPLED, .binding = 2, .sampler = SF_SAMPLER_LINEAR},
+        {.resource = billboards->smoke_depth, .access = SF_ACCESS_SAMPLED, .binding = 3},
+        {.resource = frame->depth, .access = SF_ACCESS_SAMPLED, .binding = 4},
+    };
+    uint32_t count = 5;
+
+    for (uint32_t i = 0; i < target_count; i++)
+        uses[count++] = targets[i];
+    desc.kind = SF_PASS_RASTER;
+    desc.shader = "billboard/over.vert";
+    desc.constants[0] = billboards->push.scale;
+    desc.constants[1] = frame->scene->billboard.upsample;
+    desc.constant_count = 2;
+    desc.vertices = 4;
+    desc.instances = 1;
+    desc.raster.triangle_strip = true;
+    add_pass(frame, billboards, uses, count, desc);
+}
+
+static void add_aovs(struct sf_method_frame *frame, struct sf_billboards *billboards)
+{
+    sf_resource extent = sf_thick_image(frame->graph, "smoke.extent", SF_FORMAT_RGBA32F, billboards->push.width,
+                                        billboards->push.height);
+    const struct sf_billboard_look look = {
+        .name = "billboard.depths", .fragment = "billboard/depths.frag", .whole = true, .blend = SF_BLEND_MIN_ADD};
+
+    add_draw(frame, billboards, &look,
+             (struct sf_use){.resource = extent,
+                             .access = SF_ACCESS_COLOR,
+                             .binding = 0,
+                             .load = SF_LOAD_CLEAR,
+                             .clear = {SF_DEPTH_FAR, SF_DEPTH_FAR, 1, 0}});
+    frame->aov_radiance = sf_thick_image(frame->graph, "aov.smoke", SF_FORMAT_RGBA32F, frame->width, frame->height);
+    frame->aov_depths = sf_thick_image(frame->graph, "aov.depths", SF_FORMAT_RGBA32F, frame->width, frame->height);
+    const struct sf_use targets[] = {
+        {.resource = extent, .access = SF_ACCESS_SAMPLED, .binding = 5},
+        {.resource = frame->aov_radiance, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_CLEAR},
+        {.resource = frame->aov_depths,
+         .access = SF_ACCESS_COLOR,
+         .binding = 1,
+         .load = SF_LOAD_CLEAR,
+         .clear = {SF_DEPTH_FAR, SF_DEPTH_FAR, 0, 1}},
+    };
+    add_over(frame, billboards, targets, SF_COUNT(targets),
+             (struct sf_pass_desc){.name = "billboard.aovs", .fragment = "billboard/aovs.frag"});
+}
+
+enum sf_status sf_billboard_view(struct sf_method_frame *frame, void *state, const struct sf_billboard_look *look,
+                                 const struct sf_log *log)
+{
+    struct sf_billboards *billboards = state;
+    const struct sf_use over = {
+        .resource = frame->color, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_KEEP};
+
+    (void)log;
+    billboards->thick.atlas = sf_thick_atlas_resource(frame->graph);
+    add_list(frame, billboards);
+    add_targets(frame, billboards);
+    add_draw(
+        frame, billboards, look,
+        (struct sf_use){.resource = billboards->smoke, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_CLEAR});
+    add_over(frame, billboards, &over, 1,
+             (struct sf_pass_desc){.name = "billboard.over",
+                                   .fragment = "billboard/over.frag",
+                                   .raster = {.blend = {SF_BLEND_PREMULTIPLIED}}});
+    if (frame->want_aovs)
+        add_aovs(frame, billboards);
+    return SF_OK;
+}

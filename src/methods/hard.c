@@ -1,0 +1,9 @@
+#include "methods/billboard.h"
+#include "methods/sprites.h"
+
+enum sf_status sf_hard_view(struct sf_method_frame *frame, void *state, const struct sf_log *log)
+{
+    static const struct sf_billboard_look look = {.name = "hard.draw", .fragment = "hard/particle.frag"};
+
+    return sf_billboard_view(frame, state, &look, log);
+}

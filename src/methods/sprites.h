@@ -1,0 +1,12 @@
+/* The `view` of each method of billboards, see method.h; the rest of their rows is of billboard.h. */
+#ifndef SF_METHODS_SPRITES_H
+#define SF_METHODS_SPRITES_H
+
+#include "methods/method.h"
+
+enum sf_status sf_hard_view(struct sf_method_frame *frame, void *state, const struct sf_log *log);
+enum sf_status sf_soft_view(struct sf_method_frame *frame, void *state, const struct sf_log *log);
+enum sf_status sf_contrast_view(struct sf_method_frame *frame, void *state, const struct sf_log *log);
+enum sf_status sf_spherical_view(struct sf_method_frame *frame, void *state, const struct sf_log *log);
+
+#endif
