@@ -78,8 +78,7 @@ void sf_thick_pass(struct sf_method_frame *frame, const struct sf_thick *thick, 
 void sf_thick_probe(struct sf_method_frame *frame, const struct sf_thick *thick, struct sf_use *uses,
                     uint32_t use_count, struct sf_pass_desc march)
 {
-    frame->probe =
-        sf_thick_buffer(frame->graph, "probe", SF_PROBE_BYTES((uint32_t)frame->scene->thick.steps + 1));
+    frame->probe = sf_thick_buffer(frame->graph, "probe", SF_PROBE_BYTES((uint32_t)frame->scene->thick.steps + 1));
     for (uint32_t i = 0; i < use_count; i++)
         if (uses[i].resource == thick->smoke)
             uses[i] = (struct sf_use){
