@@ -43,7 +43,7 @@ struct sf_thick_push {
     SF_UINT(capacity);      /* particles; the sphere of that number is an empty one, to pad lists with */
     SF_UINT(list_words);    /* room for the camera's lists, particles */
     SF_UINT(light_list);    /* room for the list of one tile of a light's map, particles */
-    SF_UINT(spare);
+    SF_UINT(probe);         /* the smoke's pixel that is probed: y * width + x */
 };
 
 struct sf_thick_blur_push {

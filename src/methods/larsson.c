@@ -139,7 +139,7 @@ static void add_march(struct sf_method_frame *frame, struct sf_thick *thick)
 {
     const struct sf_thick_settings *settings = &frame->scene->thick;
     bool positional = sf_thick_positional(frame->scene);
-    const struct sf_use uses[] = {
+    struct sf_use uses[] = {
         {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
         {.resource = thick->tiles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
         {.resource = thick->args, .access = SF_ACCESS_UNIFORM, .binding = 2},
@@ -151,16 +151,22 @@ static void add_march(struct sf_method_frame *frame, struct sf_thick *thick)
         {.resource = thick->smoke_depth, .access = SF_ACCESS_SAMPLED, .binding = 8},
         {.resource = thick->smoke, .access = SF_ACCESS_STORAGE_MODIFY, .binding = 9},
     };
-    sf_thick_pass(frame, thick, uses, SF_COUNT(uses),
-                  (struct sf_pass_desc){.name = "larsson.march",
-                                        .kind = SF_PASS_COMPUTE,
-                                        .shader = "larsson/march.comp",
-                                        .constants = {(uint32_t)settings->steps, frame->scene->light_count,
-                                                      settings->scene_shadow, (uint32_t)settings->octaves, positional,
-                                                      frame->scene->larsson.soft > 0},
-                                        .constant_count = 6,
-                                        .indirect = thick->args,
-                                        .indirect_offset = SF_THICK_DISPATCH_TILES_OFFSET});
+    struct sf_pass_desc march = {.name = "larsson.march",
+                                 .kind = SF_PASS_COMPUTE,
+                                 .shader = "larsson/march.comp",
+                                 .constants = {(uint32_t)settings->steps, frame->scene->light_count,
+                                               settings->scene_shadow, (uint32_t)settings->octaves, positional,
+                                               frame->scene->larsson.soft > 0},
+                                 .constant_count = 6,
+                                 .indirect = thick->args,
+                                 .indirect_offset = SF_THICK_DISPATCH_TILES_OFFSET};
+    sf_thick_pass(frame, thick, uses, SF_COUNT(uses), march);
+    if (!frame->want_probe)
+        return;
+    march.name = "larsson.probe";
+    march.shader = "larsson/probe.comp";
+    uses[1].resource = thick->mask; /* whether the pixel's tile is among those listed */
+    sf_thick_probe(frame, thick, uses, SF_COUNT(uses), march);
 }
 
 /* `choice` as in tile.vert. */

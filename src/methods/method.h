@@ -33,6 +33,12 @@ struct sf_method_frame {
     sf_resource aov_radiance; /* RGBA16F: premultiplied smoke alone, A: alpha */
     sf_resource aov_depths;   /* RGBA32F: near, far (m of view depth), optical depth, transmittance */
     sf_resource verdict;      /* buffer for `judge`, which comes back with the frame */
+    /* Set by `view` when asked for: a buffer as shared/probe.h has it, with what the method sampled along the ray of the
+     * frame's pixel probe_at (`update` finds it there); 0 when the method keeps nothing of the way. Comes back with the
+     * frame. */
+    bool want_probe;
+    uint32_t probe_at[2];
+    sf_resource probe;
 };
 
 struct sf_method_row {

@@ -200,7 +200,7 @@ static void add_march(struct sf_method_frame *frame, struct sf_thick *thick)
 {
     const struct sf_thick_settings *settings = &frame->scene->thick;
     bool positional = sf_thick_positional(frame->scene);
-    const struct sf_use uses[] = {
+    struct sf_use uses[] = {
         {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
         {.resource = thick->tiles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
         {.resource = thick->args, .access = SF_ACCESS_UNIFORM, .binding = 2},
@@ -215,18 +215,22 @@ static void add_march(struct sf_method_frame *frame, struct sf_thick *thick)
         {.resource = thick->ranges, .access = SF_ACCESS_STORAGE_READ, .binding = 11},
         {.resource = thick->list, .access = SF_ACCESS_STORAGE_READ, .binding = 12},
     };
-    sf_thick_pass(
-        frame, thick, uses, SF_COUNT(uses),
-        (struct sf_pass_desc){.name = "thick.march",
-                              .kind = SF_PASS_COMPUTE,
-                              .shader = "thick/march.comp",
-                              .constants = {(uint32_t)settings->steps, frame->scene->light_count,
-                                            settings->scene_shadow, (uint32_t)settings->octaves, positional,
-                                            settings->detail > 0, (uint32_t)settings->placement,
-                                            frame->scene->ramp_count > 0, slices_of(frame->scene), turn_of(frame)},
-                              .constant_count = 10,
-                              .indirect = thick->args,
-                              .indirect_offset = SF_THICK_DISPATCH_TILES_OFFSET});
+    struct sf_pass_desc march = {.name = "thick.march",
+                                 .kind = SF_PASS_COMPUTE,
+                                 .shader = "thick/march.comp",
+                                 .constants = {(uint32_t)settings->steps, frame->scene->light_count,
+                                               settings->scene_shadow, (uint32_t)settings->octaves, positional,
+                                               settings->detail > 0, (uint32_t)settings->placement,
+                                               frame->scene->ramp_count > 0, slices_of(frame->scene), turn_of(frame)},
+                                 .constant_count = 10,
+                                 .indirect = thick->args,
+                                 .indirect_offset = SF_THICK_DISPATCH_TILES_OFFSET};
+    sf_thick_pass(frame, thick, uses, SF_COUNT(uses), march);
+    if (!frame->want_probe)
+        return;
+    march.name = "thick.probe";
+    march.shader = "thick/probe.comp";
+    sf_thick_probe(frame, thick, uses, SF_COUNT(uses), march);
 }
 
 /* Optical depth of the frame's own pixels; with what is asked for beside the picture, near and far as well. */

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include "shared/frame.h"
 #include "shared/particle.h"
+#include "shared/probe.h"
 
 _Static_assert(sizeof(struct sf_thick_push) <= SF_PUSH_BYTES_MAX, "push constants");
 _Static_assert(sizeof(struct sf_thick_blur_push) <= SF_PUSH_BYTES_MAX, "push constants");
@@ -57,6 +58,7 @@ void sf_thick_fill(const struct sf_method_frame *frame, struct sf_thick *thick)
         .ambient = settings->ambient,
         .light_margin = (float)sf_thick_blur_radius(settings->light_blur) + 1.0f,
         .capacity = (uint32_t)frame->scene->sim.capacity,
+        .probe = frame->probe_at[1] / scale * width + frame->probe_at[0] / scale,
     };
     thick->light_blur = (struct sf_thick_blur_push){
         .width = cells * thick->push.cell_size, .height = thick->push.cell_size, .cell = thick->push.cell_size};
@@ -71,6 +73,19 @@ void sf_thick_pass(struct sf_method_frame *frame, const struct sf_thick *thick, 
     desc.push = &thick->push;
     desc.push_bytes = sizeof thick->push;
     sf_graph_pass(frame->graph, &desc);
+}
+
+void sf_thick_probe(struct sf_method_frame *frame, const struct sf_thick *thick, struct sf_use *uses,
+                    uint32_t use_count, struct sf_pass_desc march)
+{
+    frame->probe = sf_thick_buffer(frame->graph, "probe", SF_PROBE_BYTES((uint32_t)frame->scene->thick.steps + 1));
+    for (uint32_t i = 0; i < use_count; i++)
+        if (uses[i].resource == thick->smoke)
+            uses[i] = (struct sf_use){
+                .resource = frame->probe, .access = SF_ACCESS_STORAGE_WRITE, .binding = uses[i].binding};
+    march.indirect = 0;
+    march.groups[0] = march.groups[1] = march.groups[2] = 1;
+    sf_thick_pass(frame, thick, uses, use_count, march);
 }
 
 void sf_thick_blur(struct sf_method_frame *frame, const struct sf_thick *thick, const char *const names[2],

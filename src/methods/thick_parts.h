@@ -35,6 +35,10 @@ void sf_thick_pass(struct sf_method_frame *frame, const struct sf_thick *thick, 
  * pixel, or over the frame's (`to_frame`). `choice` as in tile.vert. `desc` has name, fragment shader and blending. */
 void sf_thick_tile_pass(struct sf_method_frame *frame, const struct sf_thick *thick, const struct sf_use *uses,
                         uint32_t use_count, bool to_frame, uint32_t choice, struct sf_pass_desc desc);
+/* The march of the probed pixel alone, by one group: `march` has name and shader and is else the march's, `uses` are its
+ * uses, in which the smoke's image gives way to frame->probe. */
+void sf_thick_probe(struct sf_method_frame *frame, const struct sf_thick *thick, struct sf_use *uses,
+                    uint32_t use_count, struct sf_pass_desc march);
 /* Whether some light stands somewhere, so that its way and strength change along a ray. */
 bool sf_thick_positional(const struct sf_scene *scene);
 sf_resource sf_thick_image(struct sf_graph *graph, const char *name, enum sf_format format, uint32_t width,

@@ -280,6 +280,9 @@ static void declare_outputs(struct sf_assembly *assembly, const struct sf_assemb
     if (method->verdict)
         assembly->read_verdict = declare_readback(assembly, "read.verdict", "output.verdict", method->verdict,
                                                   sf_graph_buffer_at(assembly->graph, method->verdict)->bytes);
+    if (method->probe)
+        assembly->read_probe = declare_readback(assembly, "read.probe", "output.probe", method->probe,
+                                                sf_graph_buffer_at(assembly->graph, method->probe)->bytes);
     if (!returned)
         return;
     if (options->aovs & SF_AOV_SMOKE && method->aov_radiance) {
@@ -340,7 +343,8 @@ enum sf_status sf_assembly_create(const struct sf_scene *scene, const struct sf_
                                                 .tuning = tuning,
                                                 .width = options->width,
                                                 .height = options->height,
-                                                .want_aovs = options->aovs != 0};
+                                                .want_aovs = options->aovs != 0,
+                                                .want_probe = options->probe};
     sf_drawn_fill(scene, &assembly->drawn);
     status = declare(assembly, options, log);
     if (!status)

@@ -18,8 +18,8 @@ struct sf_assembly {
     sf_resource objects_upload;
     sf_resource environment, blank; /* imported images; 0 when not needed */
     sf_resource vertices, indices;  /* imported; 0 without meshes */
-    sf_resource read_color, read_depth, read_counts, read_verdict, read_smoke, read_depths,
-        read_particles;          /* readback buffers; 0 when not asked for */
+    sf_resource read_color, read_depth, read_counts, read_verdict, read_smoke, read_depths, read_particles,
+        read_probe;              /* readback buffers; 0 when not asked for */
     enum sf_format smoke_format; /* of read_smoke: RGBA16F or RGBA32F, as the method has it */
     struct sf_inspected inspected;
 };
@@ -32,6 +32,7 @@ struct sf_assembly_options {
     bool returned; /* all comes back as well */
     uint32_t aovs;
     bool particles;      /* the list comes back */
+    bool probe;          /* what the method samples along one pixel's ray comes back */
     uint32_t capacity;   /* particles in the list */
     const char *inspect; /* an image or buffer of the graph that comes back as well, or NULL */
 };

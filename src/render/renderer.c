@@ -11,6 +11,7 @@
 #include "base/log.h"
 #include "output/half.h"
 #include "shared/particle.h"
+#include "shared/probe.h"
 
 /* The public particle is the device's own behind another name: the list is handed out as it comes back. */
 _Static_assert(sizeof(struct sf_frame_particle) == sizeof(struct sf_particle), "layout");
@@ -27,6 +28,10 @@ _Static_assert(offsetof(struct sf_frame_particle, birth_extinction) == offsetof(
                "layout");
 _Static_assert(offsetof(struct sf_frame_particle, id) == offsetof(struct sf_particle, id), "layout");
 _Static_assert(offsetof(struct sf_frame_particle, look) == offsetof(struct sf_particle, look), "layout");
+_Static_assert(sizeof(struct sf_probe_point) == 4 * SF_PROBE_POINT_WORDS, "layout");
+_Static_assert(offsetof(struct sf_probe_point, depth) == 0, "layout");
+_Static_assert(offsetof(struct sf_probe_point, transmittance) == 4, "layout");
+_Static_assert(offsetof(struct sf_probe_point, radiance) == 8, "layout");
 
 enum { BATCH = 16 };
 
@@ -159,6 +164,8 @@ static enum sf_status record_picture(struct sf_renderer *renderer, struct sf_que
     sf_matrix_transpose(filled.world_to_clip, queued->world_to_clip);
     compare_still(renderer, &filled);
     assembly->method.play = renderer->still.plays;
+    memcpy(assembly->method.probe_at, renderer->probe, sizeof renderer->probe);
+    memcpy(queued->probe, renderer->probe, sizeof queued->probe);
     if (row->update)
         row->update(&assembly->method, assembly->state);
     if (renderer->begun)
@@ -310,6 +317,20 @@ static enum sf_status take_inspected(struct sf_renderer *renderer, const struct 
     return SF_OK;
 }
 
+/* The points lie in the buffer as they are handed out. */
+static enum sf_status take_probe(struct sf_renderer *renderer, const struct sf_queued *queued, struct sf_frame *frame)
+{
+    enum sf_status status = SF_OK;
+    const uint32_t *words = read_back(renderer, renderer->stage.assembly->read_probe, queued->serial, &status);
+
+    if (!words)
+        return status;
+    frame->probe = (const struct sf_probe_point *)(const void *)(words + 1);
+    frame->probe_count = words[0];
+    memcpy(frame->probe_at, queued->probe, sizeof frame->probe_at);
+    return SF_OK;
+}
+
 /* As the other kind of number, once a ticket; NULL when memory is out. */
 static const void *convert_smoke(struct sf_renderer *renderer, const struct sf_queued *queued, const void *data)
 {
@@ -415,6 +436,8 @@ enum sf_status sf_renderer_wait(struct sf_renderer *renderer, uint64_t ticket, s
         status = take_smoke(renderer, queued, frame);
     if (!status)
         status = take_inspected(renderer, queued, frame);
+    if (!status)
+        status = take_probe(renderer, queued, frame);
     const void *verdict = read_back(renderer, assembly->read_verdict, queued->serial, &status);
     if (!status && verdict && sf_methods[assembly->drawn.scene->method].judge)
         return sf_methods[assembly->drawn.scene->method].judge(&assembly->method, verdict, renderer->log);

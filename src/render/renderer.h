@@ -15,6 +15,7 @@ struct sf_queued {
     uint32_t number;
     double time;
     struct sf_camera_pose pose;
+    uint32_t probe[2];
     uint64_t stepped; /* the frame of the device with which simulation steps went; 0: none */
     float progress;
     float world_to_camera[16], world_to_clip[16];
@@ -50,6 +51,7 @@ struct sf_renderer {
     struct sf_renderer_options options; /* `inspect` is our own copy */
     struct sf_camera_pose pose;         /* instead of the scene's camera, when: */
     bool posed;
+    uint32_t probe[2]; /* the probed pixel */
     struct sf_particles *particles;
     struct sf_assets assets;
     struct sf_stage stage;

@@ -27,6 +27,8 @@ static enum sf_status check_options(const struct sf_device *device, const struct
         return sf_fail(log, SF_ERROR_USAGE, "inspecting '%s' needs what no_readback leaves out", options->inspect);
     if (options->particles && options->no_readback)
         return sf_fail(log, SF_ERROR_USAGE, "the list of particles needs what no_readback leaves out");
+    if (options->probe && options->no_readback)
+        return sf_fail(log, SF_ERROR_USAGE, "a probe needs what no_readback leaves out");
     return SF_OK;
 }
 
@@ -82,6 +84,7 @@ static enum sf_status make_stage(const struct sf_renderer *renderer, const struc
                                                .returned = options->returned,
                                                .aovs = options->aovs,
                                                .particles = options->particles,
+                                               .probe = options->probe,
                                                .inspect = options->inspect,
                                                .capacity = (uint32_t)scene->sim.capacity};
     enum sf_status status =
@@ -96,6 +99,17 @@ static enum sf_status make_stage(const struct sf_renderer *renderer, const struc
     sf_player_set_readback_depth(stage->player, options->frames_kept);
     sf_player_set_timing(stage->player, options->timing);
     return SF_OK;
+}
+
+/* The new options in place of the old. The probe stays where it is unless the size is another. */
+static void take_options(struct sf_renderer *renderer, const struct sf_renderer_options *options)
+{
+    if (options->width != renderer->options.width || options->height != renderer->options.height) {
+        renderer->probe[0] = options->width / 2;
+        renderer->probe[1] = options->height / 2;
+    }
+    free((char *)renderer->options.inspect);
+    renderer->options = *options;
 }
 
 /* Destroys it but for what `other` has as well. */
@@ -155,6 +169,8 @@ enum sf_status sf_renderer_create(struct sf_device *device, const struct sf_scen
     renderer->scene = scene;
     renderer->log = log;
     status = copy_options(renderer, options, &renderer->options);
+    renderer->probe[0] = options->width / 2;
+    renderer->probe[1] = options->height / 2;
     if (!status)
         status = sf_particles_create(device->gpu, scene, log, &renderer->particles);
     if (!status)
@@ -248,8 +264,7 @@ enum sf_status sf_renderer_set_options(struct sf_renderer *renderer, const struc
         free((char *)copied.inspect);
         return status;
     }
-    free((char *)renderer->options.inspect);
-    renderer->options = copied;
+    take_options(renderer, &copied);
     take_stage(renderer, &stage);
     bind_parts(renderer);
     return SF_OK;
@@ -268,4 +283,18 @@ void sf_renderer_set_view(struct sf_renderer *renderer, const struct sf_camera_v
         sf_log(renderer->log, SF_LOG_WARNING,
                "a view is not taken: its eye is at its target, or a number is out of range");
     }
+}
+
+enum sf_status sf_renderer_set_probe(struct sf_renderer *renderer, uint32_t x, uint32_t y)
+{
+    const struct sf_renderer_options *options = &renderer->options;
+
+    if (!options->probe)
+        return sf_fail(renderer->log, SF_ERROR_USAGE, "the renderer was made without probe");
+    if (x >= options->width || y >= options->height)
+        return sf_fail(renderer->log, SF_ERROR_USAGE, "a frame of %ux%u has no pixel (%u, %u) to probe", options->width,
+                       options->height, x, y);
+    renderer->probe[0] = x;
+    renderer->probe[1] = y;
+    return SF_OK;
 }

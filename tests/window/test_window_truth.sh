@@ -4,7 +4,7 @@
 . "$SF_SOURCE_ROOT/tests/window/lib.sh"
 scene=$SF_SOURCE_ROOT/scenes/truth/overlap.json
 
-start "$scene" -s 900x520 --paused --frame 3
+start "$scene" -s 900x520 --paused --frame 3 -v
 key F7
 steady
 shot tab.png
@@ -17,17 +17,19 @@ differ plain.png map.png "the heat map in the picture's place"
 numbers() { sed -n 's/.*transmittance mean \(.*\), max \(.*\); relative MSE \(.*\), bias \(.*\)$/\1 \2 \3 \4/p' err | tail -n 1; }
 viewed=$(numbers)
 
-# A ray, kept by a click: the panel shows it.
+# A ray, kept by a click: the panel shows it, with the samples of the method.
 shot before.png
 xdotool mousemove --window "$window" 260 240 click 1
 sleep 1
 steady
 shot ray.png
 differ before.png ray.png "the ray of the pixel under the mouse"
+expect_said 10 ': 9 points of the method'
 
 # A step of time ends it, and the picture is back; without smoke, and of method none, too.
 xdotool mousemove --window "$window" 5 5
 key period
+steady # both keys in one turn of a slow machine would change nothing
 key comma
 steady
 shot back.png 400x300+60+60

@@ -3,6 +3,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "log_line.h"
 #include "view.h"
 
 /* What a picture follows from: all numbers, without gaps. */
@@ -77,6 +78,7 @@ void sf_against_take(struct sf_view *view, const struct sf_frame *frame)
         sf_comparison_begin(view->model.scene, frame, 1u << against->stride, threads_to_use(), &view->log);
     against->subject = subject_now(view);
     against->probe_wanted = true; /* of the pixel that was shown, in this picture */
+    against->way = SF_WAY_AWAITED;
     if (!against->comparison)
         sf_view_note(view, SF_LOG_ERROR, "no memory for a comparison");
 }
@@ -100,6 +102,53 @@ void sf_against_show(struct sf_view *view)
                                                            .inspected_height = compared[1],
                                                            .inspected_channels = 1});
     free(values);
+}
+
+void sf_against_probe(struct sf_view *view)
+{
+    const struct sf_against *against = &view->against;
+
+    sf_comparison_probe(against->comparison, against->pixel[0], against->pixel[1]);
+    view->dirty = view->dirty || against->way != SF_WAY_NONE;
+}
+
+bool sf_against_probes(const struct sf_view *view)
+{
+    return view->against.comparison && !view->against.gone;
+}
+
+void sf_against_aim(struct sf_view *view)
+{
+    const uint32_t *pixel = view->against.pixel;
+
+    /* None may have been pointed at, or the window has another size now, which ends the comparison. */
+    if (view->options.probe && pixel[0] < view->options.width && pixel[1] < view->options.height)
+        sf_renderer_set_probe(view->renderer, pixel[0], pixel[1]);
+}
+
+void sf_against_land(struct sf_view *view, const struct sf_frame *frame)
+{
+    struct sf_against *against = &view->against;
+    struct sf_probe_point *curve;
+
+    if (!view->options.probe)
+        return;
+    against->way = SF_WAY_NONE;
+    if (!frame->probe)
+        return;
+    against->way = SF_WAY_AWAITED;
+    curve = realloc(against->curve, (frame->probe_count + 1) * sizeof *curve);
+    if (!curve) {
+        sf_view_note(view, SF_LOG_ERROR, "no memory for the method's samples along a ray");
+        return;
+    }
+    memcpy(curve, frame->probe, frame->probe_count * sizeof *curve);
+    against->curve = curve;
+    against->curve_count = frame->probe_count;
+    memcpy(against->curve_at, frame->probe_at, sizeof against->curve_at);
+    against->way = SF_WAY_KNOWN;
+    sf_log_line(&view->log, SF_LOG_DEBUG, "probed pixel %u, %u: %u points of the method", frame->probe_at[0],
+                frame->probe_at[1], frame->probe_count);
 }
 
 /* In the log for those who drive the viewer by scripts, and in the picture's corner. */
@@ -156,4 +205,6 @@ void sf_against_finish(struct sf_view *view)
 {
     sf_comparison_destroy(&view->against.comparison);
     sf_looking_finish(&view->against.heat);
+    free(view->against.curve);
+    view->against.curve = NULL;
 }

@@ -1,4 +1,4 @@
-/* The picture held against the reference: numbers, the map's scale over the picture, and a pixel's ray as two curves. */
+/* The picture held against the reference: numbers, and the map's scale over the picture. */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -9,11 +9,9 @@
 #include "panel_draw.h"
 #include "view.h"
 
-enum { TEXT_BYTES = 160, SCALE_STEPS = 64, STRIDES = 4, QUANTITIES = 4 };
-static const float PLOT_HEIGHT = 104, AXIS_WIDTH = 58, TEXT_HEIGHT = 14, BAR_WIDTH = 200; /* px at scale 1 */
-static const float CLICK = 4; /* px: a press that is no drag */
-static const uint32_t METHOD_COLOR = 0xff66a0d9u,
-                      QUANTITY_COLORS[QUANTITIES] = {0xffdad4ccu, 0xff6a6ae8u, 0xff7fc97fu, 0xffe59a6au};
+enum { TEXT_BYTES = 160, SCALE_STEPS = 64, STRIDES = 4 };
+static const float BAR_WIDTH = 200; /* px at scale 1 */
+static const float CLICK = 4;       /* px: a press that is no drag */
 
 /* ---- asking for it ---- */
 
@@ -162,152 +160,6 @@ static void choose_map(struct sf_view *view)
                   "click.");
 }
 
-/* ---- a pixel's ray ---- */
-
-struct plot {
-    float x, y, width, height; /* px */
-    float from, to, most;      /* m of view depth; the value on top */
-};
-
-static float plot_x(const struct plot *plot, float depth)
-{
-    float part = plot->to > plot->from ? (depth - plot->from) / (plot->to - plot->from) : 1;
-
-    return plot->x + plot->width * fminf(fmaxf(part, 0), 1);
-}
-
-static float plot_y(const struct plot *plot, float value)
-{
-    return plot->y + plot->height * (1 - fminf(fmaxf(value / plot->most, 0), 1));
-}
-
-/* Quantity 0 is transmittance, 1 to 3 are red, green and blue. */
-static float quantity(const struct sf_probe_point *point, int which)
-{
-    return which == 0 ? point->transmittance : point->radiance[which - 1];
-}
-
-/* The reference along the ray, and what the method ended with: a line through the plot and a dot at its end. */
-static void draw_curve(const struct plot *plot, const struct sf_probe *probe, int which)
-{
-    float end = which == 0 ? probe->depths[3] : probe->smoke[which - 1], scale = sf_ui_scale();
-
-    for (unsigned i = 1; i < SF_PROBE_POINTS; i++)
-        sf_ui_draw_line(plot_x(plot, probe->points[i - 1].depth), plot_y(plot, quantity(&probe->points[i - 1], which)),
-                        plot_x(plot, probe->points[i].depth), plot_y(plot, quantity(&probe->points[i], which)),
-                        QUANTITY_COLORS[which], 1.5f * scale);
-    if (!isfinite(end))
-        return;
-    sf_ui_draw_line(plot->x, plot_y(plot, end), plot->x + plot->width, plot_y(plot, end),
-                    sf_color_faint(QUANTITY_COLORS[which], 0.35f), 1);
-    sf_ui_draw_circle(plot->x + plot->width - 3 * scale, plot_y(plot, end), 3.5f * scale, QUANTITY_COLORS[which], true);
-    sf_ui_draw_circle(plot->x + plot->width - 3 * scale, plot_y(plot, end), 4 * scale, METHOD_COLOR, false);
-}
-
-static void draw_axes(const struct plot *plot)
-{
-    float scale = sf_ui_scale(), height = TEXT_HEIGHT * scale;
-    char text[TEXT_BYTES];
-
-    sf_ui_draw_rectangle(plot->x, plot->y, plot->width, plot->height, 0x60000000, true);
-    for (int i = 0; i <= 2; i++) {
-        float value = plot->most * (float)i / 2, y = plot_y(plot, value);
-
-        sf_ui_draw_line(plot->x, y, plot->x + plot->width, y, SF_COLOR_SHADE, 1);
-        snprintf(text, sizeof text, "%.3g", (double)value);
-        sf_draw_text_right(plot->x - 6 * scale, fminf(fmaxf(y - height / 2, plot->y), plot->y + plot->height - height),
-                           sf_ui_dim, text);
-    }
-    snprintf(text, sizeof text, "%.4g m", (double)plot->from);
-    sf_ui_draw_text(plot->x, plot->y + plot->height + 2 * scale, sf_ui_dim, text);
-    snprintf(text, sizeof text, "%.4g m", (double)plot->to);
-    sf_draw_text_right(plot->x + plot->width, plot->y + plot->height + 2 * scale, sf_ui_dim, text);
-}
-
-/* Where the method says that smoke begins and ends. */
-static void draw_span(const struct plot *plot, const struct sf_probe *probe)
-{
-    for (int i = 0; i < 2; i++)
-        if (probe->depths[i] >= plot->from && probe->depths[i] <= plot->to)
-            sf_ui_draw_line(plot_x(plot, probe->depths[i]), plot->y, plot_x(plot, probe->depths[i]),
-                            plot->y + plot->height, sf_color_faint(METHOD_COLOR, 0.5f), 1);
-}
-
-/* The values of all curves at the mouse. */
-static void explain_depth(const struct plot *plot, const struct sf_probe *probe)
-{
-    float x, y, part;
-    const struct sf_probe_point *point;
-
-    sf_ui_mouse(&x, &y);
-    part = (x - plot->x) / plot->width;
-    if (!sf_ui_last_hovered() || part < 0 || part > 1)
-        return;
-    point = &probe->points[(unsigned)(part * (SF_PROBE_POINTS - 1) + 0.5f)];
-    sf_ui_draw_line(plot_x(plot, point->depth), plot->y, plot_x(plot, point->depth), plot->y + plot->height,
-                    sf_color_faint(sf_ui_dim, 0.5f), 1);
-    sf_ui_tooltip("reference, to %.4g m\ntransmittance %.5f\nradiance %.4g  %.4g  %.4g", (double)point->depth,
-                  (double)point->transmittance, (double)point->radiance[0], (double)point->radiance[1],
-                  (double)point->radiance[2]);
-}
-
-static void draw_plot(const char *name, const struct sf_probe *probe, int first, int last)
-{
-    const struct sf_probe_point *end = &probe->points[SF_PROBE_POINTS - 1];
-    float scale = sf_ui_scale(), margin = AXIS_WIDTH * scale;
-    struct plot plot = {.width = fmaxf(sf_ui_room() - margin - 4 * scale, margin),
-                        .height = floorf(PLOT_HEIGHT * scale),
-                        .from = probe->points[0].depth,
-                        .to = end->depth,
-                        .most = first == 0 ? 1 : 1e-6f};
-
-    for (int which = first; first > 0 && which <= last; which++)
-        plot.most = fmaxf(plot.most, 1.1f * fmaxf(quantity(end, which), probe->smoke[which - 1]));
-    sf_ui_canvas(name, plot.width + margin, plot.height + 20 * scale, &plot.x, &plot.y);
-    plot.x += margin;
-    draw_axes(&plot);
-    sf_ui_draw_clip(plot.x, plot.y - 1, plot.width, plot.height + 2);
-    draw_span(&plot, probe);
-    for (int which = first; which <= last; which++)
-        draw_curve(&plot, probe, which);
-    explain_depth(&plot, probe);
-    sf_ui_draw_unclip();
-}
-
-static void draw_probe(struct sf_view *view)
-{
-    struct sf_against *against = &view->against;
-    const struct sf_probe_point *end;
-    struct sf_probe probe;
-
-    if (!sf_comparison_probed(against->comparison, &probe)) {
-        sf_ui_text_wrapped(sf_ui_dim, "Rest on a pixel of the picture to see its ray; a click keeps it.");
-        return;
-    }
-    sf_ui_text_color(sf_ui_accent, "ray of pixel %" PRIu32 ", %" PRIu32 "%s", probe.x, probe.y,
-                     against->pinned ? " (kept: click it again)" : "");
-    end = &probe.points[SF_PROBE_POINTS - 1];
-    if (probe.failed) {
-        sf_ui_text_color(sf_ui_error, "its reference cannot be computed");
-        return;
-    }
-    sf_ui_text("transmittance  %.5f   reference %.5f", (double)probe.depths[3], (double)end->transmittance);
-    sf_ui_tooltip("Lines: the reference between the eye and a view depth. Dots and the faint lines through them: what "
-                  "the method ended with; it keeps nothing of the way. Upright lines: where the method says that "
-                  "smoke begins and ends.");
-    if (!probe.empty)
-        draw_plot("transmittance along the ray", &probe, 0, 0);
-    sf_ui_text("radiance  %.4g %.4g %.4g", (double)probe.smoke[0], (double)probe.smoke[1], (double)probe.smoke[2]);
-    sf_ui_text_color(sf_ui_dim, "reference  %.4g %.4g %.4g", (double)end->radiance[0], (double)end->radiance[1],
-                     (double)end->radiance[2]);
-    sf_ui_tooltip("Light scattered in and emitted between the eye and a view depth, as it reaches the eye: red, green "
-                  "and blue, W/(m2 sr).");
-    if (!probe.empty)
-        draw_plot("radiance along the ray", &probe, 1, 3);
-    else
-        sf_ui_text_color(sf_ui_dim, "for the reference this ray meets no smoke");
-}
-
 void sf_panel_truth(struct sf_view *view)
 {
     struct sf_against *against = &view->against;
@@ -321,7 +173,7 @@ void sf_panel_truth(struct sf_view *view)
         choose_map(view);
     draw_result(view);
     sf_ui_separator();
-    draw_probe(view);
+    sf_panel_probe(view);
 }
 
 /* ---- over the picture ---- */
@@ -450,6 +302,6 @@ void sf_panel_truth_over(struct sf_view *view)
     sf_ui_draw_unclip();
     sf_ui_draw_panel();
     if (against->probe_wanted)
-        sf_comparison_probe(against->comparison, against->pixel[0], against->pixel[1]);
+        sf_against_probe(view);
     against->probe_wanted = false;
 }

@@ -46,6 +46,7 @@ static enum sf_status land(struct sf_view *view)
     sf_stats_add(&view->stats, timings, count, flight.cpu_ms,
                  view->landed_ns ? (float)(now - view->landed_ns) * NS_TO_MS : 0, flight.record_ms);
     view->landed_ns = now;
+    sf_against_land(view, &frame);
     if (view->looking.name[0] && strcmp(view->looking.name, view->inspected) == 0)
         sf_looking_take(&view->looking, &frame);
     /* A frame that cannot be kept (it has been said why) ends the recording, not the viewer. */
@@ -90,6 +91,7 @@ static struct sf_renderer_options wanted_options(const struct sf_view *view)
                                         .shown = true,
                                         .returned = recording || view->shooting || view->comparing,
                                         .particles = view->comparing,
+                                        .probe = sf_against_probes(view),
                                         .float_aovs = view->comparing,
                                         .aovs = view->comparing ? SF_AOV_SMOKE | SF_AOV_DEPTHS : 0,
                                         .progressive = true,
@@ -101,7 +103,8 @@ static bool same_options(const struct sf_view *view, const struct sf_renderer_op
     const struct sf_renderer_options *has = &view->options;
 
     return wanted->width == has->width && wanted->height == has->height && wanted->returned == has->returned &&
-           wanted->particles == has->particles && strcmp(wanted->inspect ? wanted->inspect : "", view->inspected) == 0;
+           wanted->particles == has->particles && wanted->probe == has->probe &&
+           strcmp(wanted->inspect ? wanted->inspect : "", view->inspected) == 0;
 }
 
 static enum sf_status set_options(struct sf_view *view, const struct sf_renderer_options *wanted)
@@ -290,6 +293,7 @@ static void aim(struct sf_view *view)
     sf_rig_follow(&view->rig, &scene);
     sf_rig_view(&view->rig, &own);
     sf_renderer_set_view(view->renderer, view->rig.own ? &own : NULL);
+    sf_against_aim(view);
 }
 
 static enum sf_status draw(struct sf_view *view, struct sf_flight *flight)

@@ -65,6 +65,9 @@ struct sf_subject {
 /* Of sf_against.kind: enum sf_difference, and this. */
 enum { SF_AGAINST_PICTURE = 2 };
 
+/* What is known of the method's way along the probed ray. */
+enum sf_way { SF_WAY_AWAITED, SF_WAY_KNOWN, SF_WAY_NONE /* it keeps nothing of it */ };
+
 /* The frame held against the reference. */
 struct sf_against {
     struct sf_comparison *comparison; /* NULL: none */
@@ -79,7 +82,10 @@ struct sf_against {
     bool open;                        /* the tab */
     bool probe_wanted, pinned;
     uint32_t pixel[2]; /* of the frame: probed */
-    bool pressed;      /* the mouse, in the picture, at */
+    enum sf_way way;
+    struct sf_probe_point *curve; /* [curve_count] the method's along the ray of pixel curve_at, when it is known */
+    uint32_t curve_count, curve_at[2];
+    bool pressed; /* the mouse, in the picture, at */
     float pressed_at[2];
 };
 
@@ -193,7 +199,12 @@ bool sf_against_due(const struct sf_view *view);
 void sf_against_take(struct sf_view *view, const struct sf_frame *frame);
 /* Every turn: stops what no longer holds, shows what has come. */
 void sf_against_update(struct sf_view *view);
-void sf_against_show(struct sf_view *view); /* after `kind` has changed */
+void sf_against_show(struct sf_view *view);  /* after `kind` has changed */
+void sf_against_probe(struct sf_view *view); /* both rays of `pixel`: the method's come with a picture */
+/* For pictures: whether the method's samples are to come back with them, of which pixel, and taking them. */
+bool sf_against_probes(const struct sf_view *view);
+void sf_against_aim(struct sf_view *view);
+void sf_against_land(struct sf_view *view, const struct sf_frame *frame);
 bool sf_against_busy(const struct sf_view *view);
 void sf_against_finish(struct sf_view *view);
 
@@ -223,6 +234,7 @@ void sf_panel_look(struct sf_view *view);       /* panel_look.c: resources of th
 void sf_panel_graph(struct sf_view *view);      /* panel_graph.c: the graph as a drawing */
 void sf_panel_times(struct sf_view *view);      /* panel_times.c */
 void sf_panel_truth(struct sf_view *view);      /* panel_truth.c: the comparison with the reference */
+void sf_panel_probe(struct sf_view *view);      /* panel_probe.c: a pixel's ray, in the tab above */
 void sf_panel_truth_over(struct sf_view *view); /* panel_truth.c: the map's scale, the probe's mouse */
 void sf_panel_looked(struct sf_view *view);     /* panel_look.c: read-out over the picture, zoom and pan */
 void sf_panel_bar(struct sf_view *view, float x, float y, float width, float height); /* panel_bar.c: time */

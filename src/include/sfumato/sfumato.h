@@ -176,6 +176,9 @@ struct sf_renderer_options {
     bool shown;
     bool returned;  /* with `shown`: color and depth (and what `aovs` asks for) come back all the same */
     bool particles; /* the list of particles comes back too: 64 bytes for each of the scene's sim.capacity */
+    /* What the method samples along the ray of one pixel (sf_renderer_set_probe) comes back too, from methods that go
+     * along rays: "thick" and "thick-larsson". The picture has the same bits. */
+    bool probe;
     /* A method that betters its picture step by step ("reference") gives every one of the steps: sf_renderer_render makes
      * one, and goes on where the last call left the picture unless anything is different now. Else each
      * sf_renderer_render begins anew (or where sf_renderer_refine ended) and makes all of them. */
@@ -198,6 +201,10 @@ enum sf_status sf_renderer_set_scene(struct sf_renderer *renderer, const struct 
 enum sf_status sf_renderer_set_options(struct sf_renderer *renderer, const struct sf_renderer_options *options);
 /* The eye of the frames that follow; NULL: the scene's camera. */
 void sf_renderer_set_view(struct sf_renderer *renderer, const struct sf_camera_view *view);
+
+/* The pixel whose ray is probed in the frames that follow, row 0 on top; until then, and after a change of size, the one in
+ * the middle. SF_ERROR_USAGE: the frame has no such pixel, or the renderer's options are without `probe`. */
+enum sf_status sf_renderer_set_probe(struct sf_renderer *renderer, uint32_t x, uint32_t y);
 
 /* Steps the simulation up to just before frame number `frame` (from the start when it lies behind): for long ways, so
  * that a host can show progress. `progress` (may be NULL) is called now and then with steps done and steps to do; false
@@ -227,6 +234,13 @@ struct sf_frame_particle {
     uint32_t look; /* bits 0-7 tile of the atlas, 8-15 emitter, bit 16 stands still, bit 17 its tile turns clockwise */
 };
 
+/* How far the light has come along a pixel's ray. */
+struct sf_probe_point {
+    float depth;         /* m of view depth; SF_NO_DEPTH: the ray meets no smoke */
+    float transmittance; /* from the eye to here, 0..1 */
+    float radiance[3];   /* scattered in and emitted between the eye and here, as it reaches the eye, W/(m2 sr) */
+};
+
 struct sf_frame {
     uint32_t frame, width, height;
     double time;                /* s */
@@ -246,6 +260,12 @@ struct sf_frame {
      * end, converted to float; NaN where no pass wrote. Array layers stand below each other. NULL unless asked for. */
     const float *inspected;
     uint32_t inspected_width, inspected_height, inspected_channels; /* 1, 2 or 4 channels */
+    /* [probe_count] where smoke begins on the ray of pixel probe_at, then behind each of the method's samples the light
+     * that is counted up to there; the last is the pixel. Where the method draws smoke coarser than the frame, of the
+     * smoke's pixel that covers it. No points: it meets no smoke there. NULL unless asked for, and when the method keeps
+     * nothing of the way. */
+    const struct sf_probe_point *probe;
+    uint32_t probe_count, probe_at[2];
     const uint32_t *inspected_words; /* when the options name a buffer: its first 64 KiB at most; else NULL */
     uint32_t inspected_word_count;
     float world_to_camera[16], world_to_clip[16]; /* row-major; camera: right-handed, -z forward, Vulkan clip space */
@@ -324,11 +344,6 @@ enum sf_status sf_reference_render(const struct sf_reference *reference, const s
                                    void *user, struct sf_reference_picture **picture);
 void sf_reference_picture_destroy(struct sf_reference_picture **picture);
 
-struct sf_probe_point {
-    float depth;         /* m of view depth; SF_NO_DEPTH: the ray meets no smoke */
-    float transmittance; /* from the eye to here */
-    float radiance[3];   /* scattered in and emitted between the eye and here, as it reaches the eye */
-};
 /* Along the ray of pixel (x, y) of such a picture: `count` points, evenly from where it enters the smoke (or the near
  * plane) to where it last leaves it (or the first surface). */
 enum sf_status sf_reference_probe(const struct sf_reference *reference, const struct sf_camera_view *view,
