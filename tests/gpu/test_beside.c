@@ -28,22 +28,28 @@ static void beside(struct sf_renderer *renderer, const char *method)
         fail_msg("%s", live_message);
 }
 
-static void assert_picture(struct sf_renderer *renderer, uint64_t ticket, const struct sf_scene *scene,
-                           const struct sf_renderer_options *options, uint32_t number, const char *what)
+static void assert_same(struct sf_renderer *renderer, uint64_t ticket, const struct picture *want, const char *what)
 {
     struct sf_frame frame;
-    struct picture got, want;
+    struct picture got;
     bool same;
 
     if (sf_renderer_wait(renderer, ticket, &frame) != SF_OK)
         fail_msg("%s: %s", what, live_message);
     got = live_keep(&frame);
-    want = live_fresh(scene, options, number);
-    same = live_same(&got, &want);
+    same = live_same(&got, want);
     live_free(&got);
-    live_free(&want);
     if (!same)
-        fail_msg("%s: frame %u is not that of a renderer of its own", what, number);
+        fail_msg("%s: frame %u is not that of a renderer of its own", what, want->frame.frame);
+}
+
+static void assert_picture(struct sf_renderer *renderer, uint64_t ticket, const struct sf_scene *scene,
+                           const struct sf_renderer_options *options, uint32_t number, const char *what)
+{
+    struct picture want = live_fresh(scene, options, number);
+
+    assert_same(renderer, ticket, &want, what);
+    live_free(&want);
 }
 
 /* Both sides of a frame that is drawn now. */
@@ -77,66 +83,84 @@ static uint32_t passes_of(struct sf_renderer *renderer, uint64_t ticket, const c
 static void test_each(void **state)
 {
     struct sf_scene *scene = scene_with("thick", NULL);
-    struct sf_renderer *renderer = live_create(scene, &plain);
-    uint64_t steps;
+    struct sf_renderer *renderer = live_create(scene, &plain), *alone = live_create(scene, &plain);
+    uint64_t ticket, steps;
 
     (void)state;
     live_frame(renderer, 3);
     for (uint32_t i = 0; i < sf_method_count; i++) {
+        struct sf_scene *other = scene_with(sf_methods[i].name, NULL);
+        struct picture want = live_picture(alone, 4 + i);
+
         beside(renderer, sf_methods[i].name);
         beside(renderer, sf_methods[i].name);
         steps = sf_particles_steps(renderer->particles);
         assert_false(live_restarted(renderer, 4 + i));
-        assert_sides(renderer, "thick", sf_methods[i].name, NULL, &plain, 4 + i);
+        assert_int_equal(sf_renderer_render(renderer, 4 + i, &ticket), SF_OK);
         assert_int_equal(sf_particles_steps(renderer->particles), steps + 2); /* two substeps a frame */
-        assert_true(passes_of(renderer, renderer->tickets, "sim.") > 0);
-        assert_int_equal(passes_of(renderer, renderer->tickets | SF_BESIDE, "sim."), 0);
-        assert_true(passes_of(renderer, renderer->tickets | SF_BESIDE, "scene.") > 0);
+        assert_same(renderer, ticket, &want, "the scene's method");
+        assert_picture(renderer, ticket | SF_BESIDE, other, &plain, 4 + i, sf_methods[i].name);
+        assert_true(passes_of(renderer, ticket, "sim.") > 0);
+        assert_int_equal(passes_of(renderer, ticket | SF_BESIDE, "sim."), 0);
+        assert_true(passes_of(renderer, ticket | SF_BESIDE, "scene.") > 0);
+        live_free(&want);
+        sf_scene_destroy(&other);
     }
     beside(renderer, NULL);
     live_compare(renderer, scene, &plain, 4 + sf_method_count, "the second method gone");
     sf_renderer_destroy(&renderer);
+    sf_renderer_destroy(&alone);
     sf_scene_destroy(&scene);
+}
+
+/* Frame 6 in steps, as `played` (of the sides) is the one that takes four. */
+static void play(struct sf_renderer *renderer, int played)
+{
+    struct sf_frame frame;
+    uint64_t ticket;
+
+    for (int step = 1; step <= 6; step++) {
+        float want = step < 4 ? (float)step / 4 : 1;
+
+        assert_int_equal(sf_renderer_render(renderer, 6, &ticket), SF_OK);
+        assert_true(sf_renderer_progress(renderer) == want);
+        for (int side = 0; side < 2; side++) {
+            assert_int_equal(sf_renderer_wait(renderer, side ? ticket | SF_BESIDE : ticket, &frame), SF_OK);
+            assert_true(frame.progress == (side == played ? want : 1));
+            assert_true(frame.frame == 6 && frame.live > 0 && frame.color);
+        }
+    }
 }
 
 /* A method of four plays on either side: the other one waits, and what it has drawn is still there. */
 static void test_plays(void **state)
 {
-    static const char *const pairs[][2] = {{"reference", "thick"}, {"thick", "reference"}};
+    struct sf_scene *scenes[] = {scene_with("reference", NULL), scene_with("thick", NULL)};
+    struct picture want[] = {live_fresh(scenes[0], &plain, 6), live_fresh(scenes[1], &plain, 6)};
     struct sf_renderer_options stepwise = plain;
 
     (void)state;
     stepwise.progressive = true;
-    for (int p = 0; p < 2; p++) {
-        const char *left = pairs[p][0], *right = pairs[p][1];
-        struct sf_scene *scene = scene_with(left, NULL);
-        struct sf_renderer *renderer = live_create(scene, &plain);
-        struct sf_frame frame;
+    for (int left = 0; left < 2; left++) {
+        struct sf_renderer *renderer = live_create(scenes[left], &plain);
         uint64_t ticket;
         int calls = 0;
 
-        beside(renderer, right);
-        assert_sides(renderer, left, right, NULL, &plain, 5);
+        beside(renderer, left ? "reference" : "thick");
         assert_int_equal(sf_renderer_refine(renderer, 6, live_count, &calls), SF_OK);
         assert_int_equal(calls, 4);
-        assert_sides(renderer, left, right, NULL, &plain, 6);
+        assert_int_equal(sf_renderer_render(renderer, 6, &ticket), SF_OK);
+        assert_same(renderer, ticket, &want[left], "the scene's method, refined");
+        assert_same(renderer, ticket | SF_BESIDE, &want[!left], "the second, refined");
         assert_int_equal(sf_renderer_set_options(renderer, &stepwise), SF_OK);
-        for (int play = 1; play <= 6; play++) {
-            float want = play < 4 ? (float)play / 4 : 1;
-
-            assert_int_equal(sf_renderer_render(renderer, 7, &ticket), SF_OK);
-            assert_true(sf_renderer_progress(renderer) == want);
-            for (int side = 0; side < 2; side++) {
-                assert_int_equal(sf_renderer_wait(renderer, side ? ticket | SF_BESIDE : ticket, &frame), SF_OK);
-                assert_true(frame.progress == (side == p ? want : 1));
-                assert_true(frame.frame == 7 && frame.live > 0 && frame.color);
-            }
-        }
-        stepwise.progressive = false;
-        assert_sides(renderer, left, right, NULL, &stepwise, 7);
-        stepwise.progressive = true;
+        play(renderer, left);
+        assert_same(renderer, renderer->tickets, &want[left], "the scene's method, by steps");
+        assert_same(renderer, renderer->tickets | SF_BESIDE, &want[!left], "the second, by steps");
         sf_renderer_destroy(&renderer);
-        sf_scene_destroy(&scene);
+    }
+    for (int i = 0; i < 2; i++) {
+        live_free(&want[i]);
+        sf_scene_destroy(&scenes[i]);
     }
 }
 
@@ -177,10 +201,11 @@ static void test_changes(void **state)
 {
     static const struct {
         const char *left, *set;
-    } changes[] = {{"thick", "thick.steps=7"},         {"thick", "larsson.blur=1"},
-                   {"thick", "lights.0.intensity=5"},  {"thick", "sim.seed=9"},
-                   {"thick-larsson", "sim.seed=9"},    {"thick", "thick.resolution=half"},
-                   {"thick", "environment.type=color"}};
+    } changes[] = {{"thick", "thick.steps=7"},
+                   {"thick", "larsson.blur=1"},
+                   {"thick", "sim.seed=9"},
+                   {"thick-larsson", "sim.seed=9"},
+                   {"thick", "thick.resolution=half"}};
     struct sf_renderer_options options = plain;
     struct sf_scene *scene = scene_with("thick", NULL);
     struct sf_renderer *renderer = live_create(scene, &plain);
