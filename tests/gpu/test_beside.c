@@ -113,8 +113,8 @@ static void test_each(void **state)
     sf_scene_destroy(&scene);
 }
 
-/* Frame 6 in steps, as `played` (of the sides) is the one that takes four. */
-static void play(struct sf_renderer *renderer, int played)
+/* Frame 6 in steps; side `slow` is the one that takes four. */
+static void play(struct sf_renderer *renderer, int slow)
 {
     struct sf_frame frame;
     uint64_t ticket;
@@ -126,7 +126,7 @@ static void play(struct sf_renderer *renderer, int played)
         assert_true(sf_renderer_progress(renderer) == want);
         for (int side = 0; side < 2; side++) {
             assert_int_equal(sf_renderer_wait(renderer, side ? ticket | SF_BESIDE : ticket, &frame), SF_OK);
-            assert_true(frame.progress == (side == played ? want : 1));
+            assert_true(frame.progress == (side == slow ? want : 1));
             assert_true(frame.frame == 6 && frame.live > 0 && frame.color);
         }
     }

@@ -388,12 +388,6 @@ static enum sf_status draw(struct sf_view *view, struct sf_flight *flight)
     aim(view);
     *flight = (struct sf_flight){0};
     status = sf_renderer_render(view->renderer, view->playback.frame, &flight->ticket);
-    if (status == SF_ERROR_MEMORY && view->beside[0]) {
-        sf_wipe_give_up(view);
-        status = update_beside(view);
-        if (!status)
-            status = sf_renderer_render(view->renderer, view->playback.frame, &flight->ticket);
-    }
     flight->cpu_ms = (float)(sf_now_ns() - begin) * NS_TO_MS;
     flight->record_ms = (float)sf_renderer_record_ns(view->renderer, NULL) * NS_TO_MS;
     view->drawn_frame = view->playback.frame;
@@ -442,6 +436,16 @@ static void shoot(struct sf_view *view, const struct sf_frame *frames)
     store(view, frames);
 }
 
+/* After a failure that may be the second method's: it is given up, and the next turn tries without. */
+static enum sf_status fall_back(struct sf_view *view, enum sf_status status)
+{
+    if (!view->beside[0] || status == SF_ERROR_DEVICE_LOST)
+        return status;
+    sf_wipe_give_up(view);
+    view->dirty = true;
+    return update_beside(view);
+}
+
 enum sf_status sf_picture_update(struct sf_view *view, bool *drawn)
 {
     bool there = true;
@@ -460,7 +464,7 @@ enum sf_status sf_picture_update(struct sf_view *view, bool *drawn)
         return status;
     status = go_to(view, view->playback.frame, &there);
     if (status || !there)
-        return status;
+        return status ? fall_back(view, status) : SF_OK;
     if (view->shot && !sf_shots_recording(view->shots))
         return draw_once(view, &view->shot, &view->shooting, shoot, drawn);
     if (sf_against_due(view) && !sf_shots_recording(view->shots))
@@ -470,7 +474,7 @@ enum sf_status sf_picture_update(struct sf_view *view, bool *drawn)
     if (!status)
         status = draw(view, &view->flights[view->flight_count]);
     if (status)
-        return status;
+        return fall_back(view, status);
     view->flight_count++;
     view->dirty = false;
     view->moved = false;
