@@ -255,8 +255,7 @@ bool sf_ui_raw_hovered(void) { return ImGui::IsItemHovered(ImGuiHoveredFlags_All
 void sf_ui_raw_place(float *x, float *y) { *x = ImGui::GetCursorScreenPos().x; *y = ImGui::GetCursorScreenPos().y; }
 void sf_ui_raw_canvas(const char *name, float width, float height)
 { ImGui::InvisibleButton(name, ImVec2(width, height)); }
-void sf_ui_draw_behind(void) { self.behind = true; }
-void sf_ui_draw_panel(void) { self.behind = false; }
+void sf_ui_draw_behind(void) { self.behind = true; } void sf_ui_draw_panel(void) { self.behind = false; }
 void sf_ui_draw_clip(float x, float y, float width, float height)
 { target()->PushClipRect(ImVec2(x, y), ImVec2(x + width, y + height), true); }
 void sf_ui_draw_unclip(void) { target()->PopClipRect(); }
