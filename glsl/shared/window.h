@@ -5,7 +5,8 @@
 
 struct sf_window_picture_push {
     SF_VEC4(rect);    /* px of the window: left, top, width, height */
-    SF_VEC4(to_clip); /* xy: 2 / the window's size; z: light is multiplied by it (2^exposure); w: unused */
+    SF_VEC4(to_clip); /* xy: 2 / the window's size; z: light is multiplied by it (2^exposure); w: px of the
+                         window from which on the second picture stands, when there are two */
     SF_UVEC4(size);   /* xy: of the picture, px; zw: unused */
 };
 

@@ -13,6 +13,7 @@
 #include "encoder.h"
 #include "progress.h"
 #include "session.h"
+#include "wipe.h"
 
 enum {
     IN_FLIGHT = 2,       /* frames that the device has at once */
@@ -32,16 +33,17 @@ struct capture {
     struct sf_encoder *encoder;
     unsigned threads, slots;
     uint64_t tickets[SF_ENCODER_SLOTS_MAX];
-    size_t queued, waited; /* frames of the list */
-    bool smoke;            /* some frame had live particles */
+    size_t queued, waited;              /* frames of the list */
+    bool smoke;                         /* some frame had live particles */
+    void *joined[SF_ENCODER_SLOTS_MAX]; /* frames of two methods, as they are seen */
 };
 
-/* Color, depth and AOVs of one frame in memory. */
+/* Color, depth and AOVs of one frame in memory; of two methods there are both and what is seen of them. */
 static uint64_t frame_bytes(const struct sf_arguments *arguments)
 {
     uint64_t pixel = (strcmp(arguments->type, "float") == 0 ? 16u : 8u) + 4u + (arguments->aovs ? 8u + 16u : 0u);
 
-    return pixel * arguments->size.width * arguments->size.height;
+    return (arguments->beside ? 3 : 1) * pixel * arguments->size.width * arguments->size.height;
 }
 
 static void choose_threads(struct capture *capture)
@@ -69,7 +71,16 @@ static enum sf_status open_renderer(struct capture *capture)
                                           .inspect = arguments->inspect,
                                           .frames_kept = capture->slots};
 
-    return sf_renderer_create(capture->device, capture->scene, &options, sf_console_log(), &capture->renderer);
+    enum sf_status status;
+
+    if (arguments->wipe.given && !arguments->beside)
+        return sf_console_fail(SF_ERROR_USAGE, "--wipe says where the picture of --compare METHOD begins");
+    if (arguments->beside && arguments->inspect)
+        return sf_console_fail(SF_ERROR_USAGE, "--compare shows two pictures, --inspect one image: name one of them");
+    status = sf_renderer_create(capture->device, capture->scene, &options, sf_console_log(), &capture->renderer);
+    if (!status && arguments->beside)
+        status = sf_renderer_set_beside(capture->renderer, arguments->beside);
+    return status;
 }
 
 static enum sf_status open_encoder(struct capture *capture)
@@ -133,9 +144,14 @@ static enum sf_status queue_frame(struct capture *capture)
 static enum sf_status take_frame(struct capture *capture)
 {
     unsigned slot = (unsigned)(capture->waited % capture->slots);
-    struct sf_frame frame;
+    const struct sf_argument_real *wipe = &capture->arguments->wipe;
+    struct sf_frame frame, beside;
     enum sf_status status = sf_renderer_wait(capture->renderer, capture->tickets[slot], &frame);
 
+    if (!status && capture->arguments->beside)
+        status = sf_renderer_wait(capture->renderer, capture->tickets[slot] | SF_BESIDE, &beside);
+    if (!status && capture->arguments->beside)
+        status = sf_wipe_join(&frame, &beside, wipe->given ? (float)wipe->value : 0.5f, &capture->joined[slot]);
     if (status)
         return status;
     if (frame.live > 0)
@@ -240,6 +256,8 @@ enum sf_status sf_capture_run(const struct sf_arguments *arguments)
                         (unsigned long long)sf_encoder_frames(capture.encoder), capture.targets.frame_count);
     ended = sf_encoder_destroy(&capture.encoder);
     sf_renderer_destroy(&capture.renderer);
+    for (int slot = 0; slot < SF_ENCODER_SLOTS_MAX; slot++)
+        free(capture.joined[slot]);
     if (!status || status == SF_ERROR_INTERRUPTED)
         status = ended ? ended : status;
     if (!status)

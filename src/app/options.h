@@ -61,6 +61,9 @@ struct sf_arguments {
     struct sf_argument_real goal; /* ms */
     uint32_t first_frame, exit_after;
     const char *folder, *shaders; /* for pictures; of GLSL sources */
+    /* view and capture: two methods side by side */
+    const char *beside;           /* NULL: one method */
+    struct sf_argument_real wipe; /* 0..1; not given: the middle */
     /* texture */
     const char *kind, *channels, *bits;
     struct sf_argument_size tiles; /* how many, across and down */

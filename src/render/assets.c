@@ -43,6 +43,7 @@ static void share(const struct sf_drawn *drawn, const struct sf_assets_before *b
 {
     const struct sf_scene *scene = drawn->scene, *other = before->drawn->scene;
     const struct sf_assets *from = before->assets;
+    const struct sf_assets_before *own = before->method ? before->method : before;
 
     if (drawn->list.meshes > 0 && from->meshes.vertices && same_places(&drawn->meshes, &from->meshes) &&
         (!before->files || same_meshes(scene, other)))
@@ -51,8 +52,9 @@ static void share(const struct sf_drawn *drawn, const struct sf_assets_before *b
         (!before->files || same_picture(&scene->environment, &other->environment)))
         assets->environment = from->environment;
     assets->blank = from->blank;
-    if (assets->row == from->row && (!assets->row->same_assets || assets->row->same_assets(scene, other)))
-        assets->method = from->method;
+    if (assets->row == own->assets->row &&
+        (!assets->row->same_assets || assets->row->same_assets(scene, own->drawn->scene)))
+        assets->method = own->assets->method;
 }
 
 static struct sf_shadow_scene shadow_scene(const struct sf_drawn *drawn, const struct sf_assets *assets)
@@ -182,10 +184,15 @@ void sf_assets_bind(const struct sf_assets *assets, const struct sf_assembly *as
         assets->row->bind_assets(assembly->graph, player, assets->method);
 }
 
-void sf_assets_leave(struct sf_assets *assets, const struct sf_assets *others)
+void sf_assets_leave_method(struct sf_assets *assets, const struct sf_assets *others)
 {
     if (assets->row && assets->row->destroy_assets && assets->method != others->method)
         assets->row->destroy_assets(&assets->method);
+    *assets = (struct sf_assets){0};
+}
+
+void sf_assets_leave(struct sf_assets *assets, const struct sf_assets *others)
+{
     if (assets->meshes.vertices != others->meshes.vertices)
         sf_gpu_buffer_destroy(&assets->meshes.vertices);
     if (assets->meshes.indices != others->meshes.indices)
@@ -196,7 +203,7 @@ void sf_assets_leave(struct sf_assets *assets, const struct sf_assets *others)
         sf_gpu_image_destroy(&assets->shadow_map);
     if (assets->blank != others->blank)
         sf_gpu_image_destroy(&assets->blank);
-    *assets = (struct sf_assets){0};
+    sf_assets_leave_method(assets, others);
 }
 
 void sf_assets_finish(struct sf_assets *assets)

@@ -16,6 +16,7 @@ struct sf_assets_before {
     const struct sf_assets *assets;
     const struct sf_drawn *drawn;
     bool files;
+    const struct sf_assets_before *method; /* that the method's own are taken from; NULL: from these as well */
 };
 /* Uploads what the scene's graph imports, and draws the shadow map. `assets` holds zeros before; finish it also after a
  * failure. With `before` (may be NULL) it takes part in what would come out the same: then only one of the two may be
@@ -25,6 +26,8 @@ enum sf_status sf_assets_init(struct sf_gpu *gpu, const struct sf_drawn *drawn, 
 void sf_assets_bind(const struct sf_assets *assets, const struct sf_assembly *assembly, struct sf_player *player);
 /* Destroys what `assets` does not have in common with `others`. */
 void sf_assets_leave(struct sf_assets *assets, const struct sf_assets *others);
+/* The same where all but the method's own belongs to somebody else. */
+void sf_assets_leave_method(struct sf_assets *assets, const struct sf_assets *others);
 void sf_assets_finish(struct sf_assets *assets);
 
 #endif

@@ -15,5 +15,7 @@ struct sf_device {
  * *width x *height px: rests in SF_ACCESS_SAMPLED, the renderer's. NULL before the first picture. */
 struct sf_gpu_image *sf_renderer_shown(const struct sf_renderer *renderer, uint32_t *width, uint32_t *height,
                                        bool *float_color);
+/* The second method's, of the same size and format. NULL: there is none, or no picture of it yet. */
+struct sf_gpu_image *sf_renderer_shown_beside(const struct sf_renderer *renderer);
 
 #endif

@@ -116,9 +116,9 @@ enum sf_status sf_renderer_graph_print(const struct sf_renderer *renderer, const
 
     if (!status) {
         print_plan(&printer, sf_particles_plan(renderer->particles));
-        status = print_shadow(&printer, &renderer->stage.assembly->drawn);
+        status = print_shadow(&printer, &renderer->sides[0].stage.assembly->drawn);
     }
     if (!status)
-        print_plan(&printer, renderer->stage.assembly->plan);
+        print_plan(&printer, renderer->sides[0].stage.assembly->plan);
     return finish(&printer, status, text);
 }

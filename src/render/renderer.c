@@ -1,37 +1,12 @@
-/* Simulation up to a frame, its picture, and what comes back of it.
+/* Simulation up to a frame, and its picture by every side.
  *
  * Frame n is at time n/fps, and the simulation takes whole fixed steps: preroll fps substeps + n substeps of them before frame n. So a frame has the
  * same bits however one comes to it. A frame's last steps and its picture are one submit; longer ways go ahead in batches. */
 #include "render/renderer.h"
 
 #include <math.h>
-#include <stddef.h>
-#include <stdlib.h>
 #include <string.h>
 #include "base/log.h"
-#include "output/half.h"
-#include "shared/particle.h"
-#include "shared/probe.h"
-
-/* The public particle is the device's own behind another name: the list is handed out as it comes back. */
-_Static_assert(sizeof(struct sf_frame_particle) == sizeof(struct sf_particle), "layout");
-_Static_assert(offsetof(struct sf_frame_particle, position) == offsetof(struct sf_particle, x), "layout");
-_Static_assert(offsetof(struct sf_frame_particle, radius) == offsetof(struct sf_particle, radius), "layout");
-_Static_assert(offsetof(struct sf_frame_particle, velocity) == offsetof(struct sf_particle, vx), "layout");
-_Static_assert(offsetof(struct sf_frame_particle, extinction) == offsetof(struct sf_particle, extinction), "layout");
-_Static_assert(offsetof(struct sf_frame_particle, age) == offsetof(struct sf_particle, age), "layout");
-_Static_assert(offsetof(struct sf_frame_particle, lifetime) == offsetof(struct sf_particle, lifetime), "layout");
-_Static_assert(offsetof(struct sf_frame_particle, rotation) == offsetof(struct sf_particle, rotation), "layout");
-_Static_assert(offsetof(struct sf_frame_particle, temperature) == offsetof(struct sf_particle, temperature), "layout");
-_Static_assert(offsetof(struct sf_frame_particle, birth_radius) == offsetof(struct sf_particle, radius0), "layout");
-_Static_assert(offsetof(struct sf_frame_particle, birth_extinction) == offsetof(struct sf_particle, extinction0),
-               "layout");
-_Static_assert(offsetof(struct sf_frame_particle, id) == offsetof(struct sf_particle, id), "layout");
-_Static_assert(offsetof(struct sf_frame_particle, look) == offsetof(struct sf_particle, look), "layout");
-_Static_assert(sizeof(struct sf_probe_point) == 4 * SF_PROBE_POINT_WORDS, "layout");
-_Static_assert(offsetof(struct sf_probe_point, depth) == 0, "layout");
-_Static_assert(offsetof(struct sf_probe_point, transmittance) == 4, "layout");
-_Static_assert(offsetof(struct sf_probe_point, radiance) == 8, "layout");
 
 enum { BATCH = 16 };
 
@@ -116,18 +91,48 @@ enum sf_status sf_renderer_seek(struct sf_renderer *renderer, uint32_t frame, sf
 
 /* ---- frames ---- */
 
-/* How many plays of the frame's graph the picture takes. */
-static uint32_t plays_of(const struct sf_renderer *renderer)
+/* How many plays of its graph the side's picture takes. */
+static uint32_t plays_of(const struct sf_side *side)
 {
-    const struct sf_method_row *row = renderer->assets.row;
+    const struct sf_method_row *row = side->assets.row;
 
-    return row->plays ? row->plays(renderer->scene) : 1;
+    return row->plays ? row->plays(side->scene) : 1;
+}
+
+/* Of the side that takes the most. */
+static uint32_t most_plays(const struct sf_renderer *renderer)
+{
+    uint32_t most = 0;
+
+    for (uint32_t i = 0; i < renderer->side_count; i++)
+        most = plays_of(&renderer->sides[i]) > most ? plays_of(&renderer->sides[i]) : most;
+    return most;
+}
+
+/* Until every side's picture is finished. */
+static uint32_t plays_left(const struct sf_renderer *renderer)
+{
+    uint32_t most = 0;
+
+    for (uint32_t i = 0; i < renderer->side_count; i++) {
+        const struct sf_side *side = &renderer->sides[i];
+        uint32_t plays = plays_of(side), left = plays > side->still.plays ? plays - side->still.plays : 0;
+
+        most = left > most ? left : most;
+    }
+    return most;
+}
+
+/* The pictures in hand, if any, are given up, or begin anew with the next play. */
+static void forget_stills(struct sf_renderer *renderer)
+{
+    for (uint32_t i = 0; i < renderer->side_count; i++)
+        renderer->sides[i].still.valid = false;
 }
 
 /* What the picture is of; a picture of something else begins anew. */
-static void compare_still(struct sf_renderer *renderer, const struct sf_gpu_frame *frame)
+static void compare_still(const struct sf_renderer *renderer, struct sf_still *still, const struct sf_gpu_frame *frame)
 {
-    struct sf_still *still = &renderer->still;
     uint64_t steps = sf_particles_steps(renderer->particles), shaders = renderer->device->shaders_set;
 
     if (!still->valid || still->steps != steps || still->shaders_set != shaders ||
@@ -137,83 +142,138 @@ static void compare_still(struct sf_renderer *renderer, const struct sf_gpu_fram
         .valid = true, .plays = still->plays, .steps = steps, .shaders_set = shaders, .frame = *frame};
 }
 
-/* The next play of the picture. */
-static enum sf_status record_picture(struct sf_renderer *renderer, struct sf_queued *queued)
+/* What both sides draw. */
+static void fill_frame(const struct sf_renderer *renderer, struct sf_queued *queued, struct sf_gpu_frame *filled)
 {
-    struct sf_assembly *assembly = renderer->stage.assembly;
-    struct sf_player *player = renderer->stage.player;
-    const struct sf_method_row *row = renderer->assets.row;
-    struct sf_gpu_frame *frame = sf_player_upload(player, assembly->method.frame);
-    void *objects = sf_player_upload(player, assembly->objects_upload);
-    struct sf_gpu_frame filled;
-    enum sf_status status;
+    uint32_t width = renderer->options.width, height = renderer->options.height;
 
-    if (!frame || !objects)
-        return sf_fail(renderer->log, SF_ERROR_MEMORY, "frame %u: no memory for its uploads", queued->number);
-    sf_uniforms_fill(renderer->scene, assembly->width, assembly->height, queued->number, queued->time, &filled);
+    sf_uniforms_fill(renderer->scene, width, height, queued->number, queued->time, filled);
     if (renderer->posed)
         queued->pose = renderer->pose;
     else
         sf_scene_camera(renderer->scene, queued->time, &queued->pose);
-    if (renderer->posed)
-        sf_uniforms_view(&renderer->pose, assembly->width, assembly->height, &filled);
-    sf_shadow_fill(&assembly->drawn.shadow, &filled);
-    memcpy(frame, &filled, sizeof filled); /* once: upload memory is slow to read, and writes may be combined */
-    memcpy(objects, assembly->drawn.objects, sizeof assembly->drawn.objects);
-    sf_matrix_transpose(filled.world_to_view, queued->world_to_camera);
-    sf_matrix_transpose(filled.world_to_clip, queued->world_to_clip);
-    compare_still(renderer, &filled);
-    assembly->method.play = renderer->still.plays;
-    memcpy(assembly->method.probe_at, renderer->probe, sizeof renderer->probe);
     memcpy(queued->probe, renderer->probe, sizeof queued->probe);
-    if (row->update)
-        row->update(&assembly->method, assembly->state);
-    if (renderer->begun)
+    if (renderer->posed)
+        sf_uniforms_view(&renderer->pose, width, height, filled);
+    sf_shadow_fill(&renderer->sides[0].stage.assembly->drawn.shadow, filled);
+    sf_matrix_transpose(filled->world_to_view, queued->world_to_camera);
+    sf_matrix_transpose(filled->world_to_clip, queued->world_to_clip);
+}
+
+/* The next play of the side's picture. */
+static enum sf_status record_side(struct sf_renderer *renderer, struct sf_side *side, uint32_t number,
+                                  const struct sf_gpu_frame *filled)
+{
+    struct sf_assembly *assembly = side->stage.assembly;
+    struct sf_player *player = side->stage.player;
+    struct sf_gpu_frame *frame = sf_player_upload(player, assembly->method.frame);
+    void *objects = sf_player_upload(player, assembly->objects_upload);
+    enum sf_status status;
+
+    if (!frame || !objects)
+        return sf_fail(renderer->log, SF_ERROR_MEMORY, "frame %u: no memory for its uploads", number);
+    memcpy(frame, filled, sizeof *filled); /* once: upload memory is slow to read, and writes may be combined */
+    memcpy(objects, assembly->drawn.objects, sizeof assembly->drawn.objects);
+    assembly->method.play = side->still.plays;
+    memcpy(assembly->method.probe_at, renderer->probe, sizeof renderer->probe);
+    if (side->assets.row->update)
+        side->assets.row->update(&assembly->method, assembly->state);
+    if (side->begun)
         sf_player_continue(player);
     status = sf_player_play(player);
     renderer->record_ns += sf_player_record_ns(player);
     renderer->recorded += assembly->plan->pass_count;
-    if (!status && renderer->still.plays < plays_of(renderer))
-        renderer->still.plays++;
+    side->begun = !status;
+    if (!status && side->still.plays < plays_of(side))
+        side->still.plays++;
     return status;
+}
+
+/* The next play of each side's picture; one that is finished waits for the other: its results stay where they are.
+ * `played`: bit set of the sides. */
+static enum sf_status record_picture(struct sf_renderer *renderer, struct sf_queued *queued, unsigned *played)
+{
+    struct sf_gpu_frame filled;
+    enum sf_status status = SF_OK;
+    bool going_on;
+
+    fill_frame(renderer, queued, &filled);
+    for (uint32_t i = 0; i < renderer->side_count; i++)
+        compare_still(renderer, &renderer->sides[i].still, &filled);
+    going_on = plays_left(renderer) > 0;
+    for (uint32_t i = 0; i < renderer->side_count && !status; i++) {
+        struct sf_side *side = &renderer->sides[i];
+
+        if (going_on && side->still.plays >= plays_of(side))
+            continue;
+        status = record_side(renderer, side, queued->number, &filled);
+        *played |= 1u << i;
+    }
+    return status;
+}
+
+static void begin_picture(struct sf_renderer *renderer, uint32_t number)
+{
+    for (uint32_t i = 0; i < renderer->side_count && !renderer->begun; i++)
+        renderer->sides[i].begun = false;
+    if (!renderer->begun || renderer->coming.number != number)
+        renderer->coming = (struct sf_queued){.number = number, .time = (double)number / renderer->scene->sim.fps};
+}
+
+/* After the submit in which the sides of the bit set were played. */
+static void end_play(struct sf_renderer *renderer, unsigned played, uint64_t serial)
+{
+    struct sf_queued *coming = &renderer->coming;
+
+    for (uint32_t i = 0; i < renderer->side_count; i++) {
+        struct sf_side *side = &renderer->sides[i];
+
+        if (played & 1u << i) {
+            side->serial = serial;
+            side->stage.drawn = true;
+        }
+        coming->serials[i] = side->serial;
+        coming->progress[i] = (float)side->still.plays / (float)plays_of(side);
+    }
 }
 
 /* A play of the picture and, before the first, the last steps to it: one submit. */
 static enum sf_status play_picture(struct sf_renderer *renderer, uint32_t number)
 {
-    struct sf_queued *coming = &renderer->coming;
-    uint64_t target = steps_at(renderer->scene, number);
+    uint64_t target = steps_at(renderer->scene, number), serial = 0;
     enum sf_status status = sf_frame_begin(renderer->device->gpu), ended;
+    unsigned played = 0;
     bool steps;
 
     if (status)
         return status;
-    if (!renderer->begun || coming->number != number)
-        *coming = (struct sf_queued){.number = number, .time = (double)number / renderer->scene->sim.fps};
+    begin_picture(renderer, number);
     steps = sf_particles_steps(renderer->particles) < target;
     status = record_steps(renderer, target - sf_particles_steps(renderer->particles));
     if (!status)
-        status = record_picture(renderer, coming);
+        status = record_picture(renderer, &renderer->coming, &played);
     renderer->begun = !status;
-    ended = sf_frame_end(renderer->device->gpu, &coming->serial);
+    ended = sf_frame_end(renderer->device->gpu, &serial);
     status = status ? status : ended;
     if (steps)
-        coming->stepped = coming->serial;
-    if (status)
-        renderer->still.valid = renderer->begun = false;
-    else
-        renderer->stage.drawn = true;
+        renderer->coming.stepped = serial;
+    if (!status) {
+        end_play(renderer, played, serial);
+        return SF_OK;
+    }
+    forget_stills(renderer);
+    renderer->begun = false;
     return status;
 }
 
 enum sf_status sf_renderer_refine(struct sf_renderer *renderer, uint32_t frame, sf_progress_fn progress, void *user)
 {
-    uint32_t last = plays_of(renderer) - 1, done;
+    uint32_t last = most_plays(renderer) - 1, done;
     enum sf_status status = last > 0 ? sf_renderer_seek(renderer, frame, NULL, NULL) : SF_OK;
 
     if (!renderer->options.progressive)
-        renderer->still.valid = false;
-    for (done = 0; done < last && !status; done = renderer->still.plays) {
+        forget_stills(renderer);
+    for (done = 0; done < last && !status; done = last + 1 - plays_left(renderer)) {
         if (progress && !progress(user, done, last)) {
             sf_log(renderer->log, SF_LOG_DEBUG, "the picture was stopped at %u of %u", done, last + 1);
             return SF_ERROR_INTERRUPTED;
@@ -227,21 +287,19 @@ enum sf_status sf_renderer_refine(struct sf_renderer *renderer, uint32_t frame, 
 
 enum sf_status sf_renderer_render(struct sf_renderer *renderer, uint32_t frame, uint64_t *ticket)
 {
-    uint32_t plays = plays_of(renderer);
     enum sf_status status = sf_renderer_seek(renderer, frame, NULL, NULL);
 
     *ticket = 0;
     renderer->record_ns = 0;
     renderer->recorded = 0;
     if (!renderer->options.progressive && !renderer->begun)
-        renderer->still.valid = false;
+        forget_stills(renderer);
     do {
         status = status ? status : play_picture(renderer, frame);
-    } while (!status && !renderer->options.progressive && renderer->still.plays < plays);
+    } while (!status && !renderer->options.progressive && plays_left(renderer) > 0);
     if (status)
         return status;
     renderer->coming.ticket = ++renderer->tickets;
-    renderer->coming.progress = (float)renderer->still.plays / (float)plays;
     renderer->queued[renderer->coming.ticket % SF_TICKETS] = renderer->coming;
     renderer->begun = false;
     *ticket = renderer->coming.ticket;
@@ -250,255 +308,12 @@ enum sf_status sf_renderer_render(struct sf_renderer *renderer, uint32_t frame, 
 
 float sf_renderer_progress(const struct sf_renderer *renderer)
 {
-    return renderer->tickets > 0 ? renderer->queued[renderer->tickets % SF_TICKETS].progress : 0;
-}
+    const struct sf_queued *last = &renderer->queued[renderer->tickets % SF_TICKETS];
+    float least = renderer->tickets > 0 ? 1 : 0;
 
-/* NULL, with a message, when its results are gone or it never was. */
-static const struct sf_queued *find(const struct sf_renderer *renderer, uint64_t ticket)
-{
-    bool kept = ticket > 0 && ticket <= renderer->tickets && renderer->tickets - ticket < renderer->options.frames_kept;
-
-    if (kept && ticket > renderer->void_tickets)
-        return &renderer->queued[ticket % SF_TICKETS];
-    if (kept)
-        sf_fail(renderer->log, SF_ERROR_USAGE, "ticket %llu: the renderer's graph was made anew since",
-                (unsigned long long)ticket);
-    else
-        sf_fail(renderer->log, SF_ERROR_USAGE, "ticket %llu: the last frame queued has %llu, and %u are kept",
-                (unsigned long long)ticket, (unsigned long long)renderer->tickets, renderer->options.frames_kept);
-    return NULL;
-}
-
-static const void *read_back(struct sf_renderer *renderer, sf_resource resource, uint64_t serial,
-                             enum sf_status *status)
-{
-    const void *data = resource ? sf_player_readback(renderer->stage.player, resource, serial) : NULL;
-
-    if (resource && !data)
-        *status = SF_ERROR_INTERNAL;
-    return data;
-}
-
-/* The inspected image as floats, once a ticket. */
-static enum sf_status convert_inspected(struct sf_renderer *renderer, const struct sf_queued *queued, const void *data,
-                                        struct sf_frame *frame)
-{
-    const struct sf_inspected *inspected = &renderer->stage.assembly->inspected;
-    uint32_t slot = (uint32_t)(queued->ticket % renderer->options.frames_kept);
-    float **values = &renderer->stage.inspected[slot];
-
-    if (!*values)
-        *values = malloc(sf_inspect_values(inspected) * sizeof **values);
-    if (!*values)
-        return SF_ERROR_MEMORY;
-    if (renderer->stage.inspected_ticket[slot] != queued->ticket)
-        sf_inspect_convert(inspected, data, *values);
-    renderer->stage.inspected_ticket[slot] = queued->ticket;
-    frame->inspected = *values;
-    frame->inspected_width = inspected->width;
-    frame->inspected_height = inspected->height;
-    frame->inspected_channels = inspected->channels;
-    return SF_OK;
-}
-
-static enum sf_status take_inspected(struct sf_renderer *renderer, const struct sf_queued *queued,
-                                     struct sf_frame *frame)
-{
-    const struct sf_inspected *inspected = &renderer->stage.assembly->inspected;
-    enum sf_status status = SF_OK;
-    const void *data = read_back(renderer, inspected->readback, queued->serial, &status);
-
-    if (!data)
-        return status;
-    if (inspected->words == 0)
-        return convert_inspected(renderer, queued, data, frame);
-    frame->inspected_words = data;
-    frame->inspected_word_count = inspected->words;
-    return SF_OK;
-}
-
-/* The points lie in the buffer as they are handed out. */
-static enum sf_status take_probe(struct sf_renderer *renderer, const struct sf_queued *queued, struct sf_frame *frame)
-{
-    enum sf_status status = SF_OK;
-    const uint32_t *words = read_back(renderer, renderer->stage.assembly->read_probe, queued->serial, &status);
-
-    if (!words)
-        return status;
-    frame->probe = (const struct sf_probe_point *)(const void *)(words + 1);
-    frame->probe_count = words[0];
-    memcpy(frame->probe_at, queued->probe, sizeof frame->probe_at);
-    return SF_OK;
-}
-
-/* As the other kind of number, once a ticket; NULL when memory is out. */
-static const void *convert_smoke(struct sf_renderer *renderer, const struct sf_queued *queued, const void *data)
-{
-    const struct sf_assembly *assembly = renderer->stage.assembly;
-    uint32_t slot = (uint32_t)(queued->ticket % renderer->options.frames_kept);
-    size_t count = (size_t)assembly->width * assembly->height * 4;
-    bool to_float = assembly->smoke_format == SF_FORMAT_RGBA16F;
-    const uint16_t *halves = data;
-    void **values = &renderer->stage.smoke[slot];
-    float *floats;
-
-    if (!*values)
-        *values = malloc(count * (to_float ? sizeof(float) : sizeof(uint16_t)));
-    if (!*values || renderer->stage.smoke_ticket[slot] == queued->ticket)
-        return *values;
-    floats = *values;
-    for (size_t i = 0; i < count && to_float; i++)
-        floats[i] = sf_half_to_float(halves[i]);
-    if (!to_float)
-        sf_half_row(data, sizeof(float), count, *values);
-    renderer->stage.smoke_ticket[slot] = queued->ticket;
-    return *values;
-}
-
-static enum sf_status take_smoke(struct sf_renderer *renderer, const struct sf_queued *queued, struct sf_frame *frame)
-{
-    const struct sf_assembly *assembly = renderer->stage.assembly;
-    enum sf_status status = SF_OK;
-    const void *data = read_back(renderer, assembly->read_smoke, queued->serial, &status);
-
-    if (!data)
-        return status;
-    if ((assembly->smoke_format == SF_FORMAT_RGBA32F) != renderer->options.float_aovs)
-        data = convert_smoke(renderer, queued, data);
-    if (!data)
-        return SF_ERROR_MEMORY;
-    if (renderer->options.float_aovs)
-        frame->smoke_float = data;
-    else
-        frame->smoke = data;
-    return SF_OK;
-}
-
-/* As glsl/lib/order.glsl. */
-static float float_from_order(uint32_t order)
-{
-    uint32_t bits = order & 0x80000000u ? order & 0x7fffffffu : ~order;
-    float value;
-
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
-
-/* `counts` NULL: they did not come back. */
-static void take_counts(const struct sf_particle_counts *counts, struct sf_frame *frame)
-{
-    bool any = counts && counts->live > 0;
-
-    for (int i = 0; i < 3; i++) {
-        frame->bounds_min[i] = any ? float_from_order(counts->bounds_min[i]) : INFINITY;
-        frame->bounds_max[i] = any ? float_from_order(counts->bounds_max[i]) : -INFINITY;
-    }
-    frame->live = counts ? counts->live : 0;
-    frame->dropped = counts ? counts->dropped : 0;
-}
-
-static void fill_view(const struct sf_camera_pose *pose, struct sf_camera_view *view)
-{
-    memcpy(view->eye, pose->eye, sizeof view->eye);
-    memcpy(view->target, pose->target, sizeof view->target);
-    memcpy(view->up, pose->up, sizeof view->up);
-    view->fov = pose->fov;
-    view->near_clip = pose->near_clip;
-}
-
-enum sf_status sf_renderer_wait(struct sf_renderer *renderer, uint64_t ticket, struct sf_frame *frame)
-{
-    const struct sf_queued *queued = find(renderer, ticket);
-    const struct sf_assembly *assembly = renderer->stage.assembly;
-    enum sf_status status = queued ? sf_frame_wait(renderer->device->gpu, queued->serial) : SF_ERROR_USAGE;
-
-    memset(frame, 0, sizeof *frame);
-    if (status)
-        return status;
-    frame->frame = queued->number;
-    frame->width = assembly->width;
-    frame->height = assembly->height;
-    frame->time = queued->time;
-    fill_view(&queued->pose, &frame->view);
-    frame->progress = queued->progress;
-    memcpy(frame->world_to_camera, queued->world_to_camera, sizeof frame->world_to_camera);
-    memcpy(frame->world_to_clip, queued->world_to_clip, sizeof frame->world_to_clip);
-    const void *color = read_back(renderer, assembly->read_color, queued->serial, &status);
-    if (assembly->float_color)
-        frame->color_float = color;
-    else
-        frame->color = color;
-    frame->depth = read_back(renderer, assembly->read_depth, queued->serial, &status);
-    frame->smoke_depths = read_back(renderer, assembly->read_depths, queued->serial, &status);
-    frame->particles = read_back(renderer, assembly->read_particles, queued->serial, &status);
-    take_counts(read_back(renderer, assembly->read_counts, queued->serial, &status), frame);
-    if (!status)
-        status = take_smoke(renderer, queued, frame);
-    if (!status)
-        status = take_inspected(renderer, queued, frame);
-    if (!status)
-        status = take_probe(renderer, queued, frame);
-    const void *verdict = read_back(renderer, assembly->read_verdict, queued->serial, &status);
-    if (!status && verdict && sf_methods[assembly->drawn.scene->method].judge)
-        return sf_methods[assembly->drawn.scene->method].judge(&assembly->method, verdict, renderer->log);
-    if (status)
-        return sf_fail(renderer->log, status, "frame %u: %s", queued->number,
-                       status == SF_ERROR_MEMORY ? "out of memory" : "its results are gone");
-    return SF_OK;
-}
-
-struct sf_gpu_image *sf_renderer_shown(const struct sf_renderer *renderer, uint32_t *width, uint32_t *height,
-                                       bool *float_color)
-{
-    *width = renderer->stage.assembly->width;
-    *height = renderer->stage.assembly->height;
-    *float_color = renderer->stage.assembly->float_color;
-    return renderer->stage.drawn ? renderer->stage.shown : NULL;
-}
-
-/* ---- times ---- */
-
-static enum sf_status add_timings(struct sf_renderer *renderer, struct sf_player *player, const struct sf_plan *plan,
-                                  uint64_t serial, uint32_t *count)
-{
-    const struct sf_pass_time *times;
-    uint32_t passes;
-    enum sf_status status = sf_player_times(player, serial, &times, &passes);
-
-    for (uint32_t i = 0; !status && i < passes && i < plan->pass_count; i++)
-        renderer->stage.timings[(*count)++] = (struct sf_pass_timing){.name = times[i].name,
-                                                                      .begin_ns = times[i].begin_ns,
-                                                                      .end_ns = times[i].end_ns,
-                                                                      .bytes_read = plan->passes[i].bytes_read,
-                                                                      .bytes_written = plan->passes[i].bytes_written};
-    return status;
-}
-
-enum sf_status sf_renderer_timings(struct sf_renderer *renderer, uint64_t ticket, const struct sf_pass_timing **timings,
-                                   uint32_t *count)
-{
-    const struct sf_queued *queued = find(renderer, ticket);
-    const struct sf_plan *simulation = sf_particles_plan(renderer->particles), *plan = renderer->stage.assembly->plan;
-    struct sf_pass_timing *room;
-    enum sf_status status = SF_OK;
-
-    *timings = NULL;
-    *count = 0;
-    if (!queued)
-        return SF_ERROR_USAGE;
-    if (!renderer->options.timing)
-        return sf_fail(renderer->log, SF_ERROR_USAGE, "the renderer was made without timing");
-    /* The simulation's passes may be others than the last time. */
-    room = realloc(renderer->stage.timings, (simulation->pass_count + plan->pass_count) * sizeof *room);
-    if (!room)
-        return sf_fail(renderer->log, SF_ERROR_MEMORY, "timings: out of memory");
-    renderer->stage.timings = room;
-    if (queued->stepped)
-        status = add_timings(renderer, sf_particles_player(renderer->particles), simulation, queued->stepped, count);
-    if (!status)
-        status = add_timings(renderer, renderer->stage.player, plan, queued->serial, count);
-    *timings = room;
-    return status;
+    for (uint32_t i = 0; i < renderer->side_count; i++)
+        least = fminf(least, renderer->tickets > 0 ? last->progress[i] : 0);
+    return least;
 }
 
 uint64_t sf_renderer_record_ns(const struct sf_renderer *renderer, uint32_t *passes)

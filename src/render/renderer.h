@@ -1,4 +1,5 @@
-/* The renderer's insides: renderer.c plays it, renderer_parts.c makes and changes it, print.c prints it. */
+/* The renderer's insides: renderer.c plays it, results.c hands out what comes back, renderer_parts.c makes and changes it,
+ * print.c prints it. */
 #ifndef SF_RENDER_RENDERER_H
 #define SF_RENDER_RENDERER_H
 
@@ -9,15 +10,19 @@
 
 enum { SF_FRAMES_KEPT_MAX = 8, SF_TICKETS = 16 };
 
+/* The scene's method and, when asked for, a second one beside it: both draw each frame from the same particles. */
+enum { SF_SIDES = 2 };
+
 /* A frame that was queued. */
 struct sf_queued {
-    uint64_t ticket, serial;
+    uint64_t ticket;
+    uint64_t serials[SF_SIDES]; /* the frame of the device that made each side's picture */
     uint32_t number;
     double time;
     struct sf_camera_pose pose;
     uint32_t probe[2];
     uint64_t stepped; /* the frame of the device with which simulation steps went; 0: none */
-    float progress;
+    float progress[SF_SIDES];
     float world_to_camera[16], world_to_clip[16];
 };
 
@@ -44,6 +49,18 @@ struct sf_still {
     struct sf_gpu_frame frame;
 };
 
+/* A method that draws, and all that it alone needs. */
+struct sf_side {
+    const struct sf_scene *scene; /* the renderer's, or: */
+    struct sf_scene *own;         /* a copy that differs in nothing but the method; its pointers are the scene's */
+    struct sf_assets assets;      /* of the second side only the method's own; the others are the first's */
+    struct sf_stage stage;
+    struct sf_still still;
+    bool begun;            /* it has been played for the picture in hand */
+    uint64_t serial;       /* the frame of the device that played it last */
+    uint64_t void_tickets; /* the first ones, whose results are gone */
+};
+
 struct sf_renderer {
     struct sf_device *device;
     const struct sf_scene *scene;
@@ -53,13 +70,12 @@ struct sf_renderer {
     bool posed;
     uint32_t probe[2]; /* the probed pixel */
     struct sf_particles *particles;
-    struct sf_assets assets;
-    struct sf_stage stage;
-    struct sf_still still;
+    struct sf_side sides[SF_SIDES]; /* zeros from side_count on */
+    uint32_t side_count;
     struct sf_queued coming; /* the picture in hand, which has no ticket yet, when: */
     bool begun;
     struct sf_queued queued[SF_TICKETS]; /* by ticket */
-    uint64_t tickets, void_tickets;      /* given so far; of these the first ones, whose results are gone */
+    uint64_t tickets;                    /* given so far */
     uint64_t record_ns;
     uint32_t recorded; /* passes */
 };

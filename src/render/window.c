@@ -235,9 +235,11 @@ enum sf_status sf_window_show(struct sf_window *window, const struct sf_window_f
 
     if (window->width == 0 || window->height == 0)
         return SF_OK;
-    if (frame->renderer)
+    if (frame->renderer) {
         input.picture =
             sf_renderer_shown(frame->renderer, &input.picture_width, &input.picture_height, &input.float_color);
+        input.beside = sf_renderer_shown_beside(frame->renderer);
+    }
     status = sf_window_shape_of(&input, &window->graph.shape, window->log, &shape);
     if (!status)
         status = try_to_draw(window, &input, &shape, &drawn);

@@ -96,6 +96,7 @@ static enum sf_status want_source(const struct sf_window_input *input, const str
     shape->source_width = input->picture_width;
     shape->source_height = input->picture_height;
     shape->source_format = input->float_color ? SF_FORMAT_RGBA32F : SF_FORMAT_RGBA16F;
+    shape->beside = input->beside != NULL;
     return sf_tone_parse(frame->tone, &shape->tone, log);
 }
 
@@ -140,12 +141,27 @@ static sf_resource declare_import(struct sf_graph *graph, const char *name, enum
                                                          .outside = outside});
 }
 
+/* A renderer's picture, sampled. */
+static sf_resource declare_source(struct sf_graph *graph, const char *name, const struct sf_window_shape *shape,
+                                  uint32_t binding, struct sf_use *use)
+{
+    sf_resource picture =
+        declare_import(graph, name, shape->source_format, shape->source_width, shape->source_height, SF_ACCESS_SAMPLED);
+
+    *use = (struct sf_use){.resource = picture,
+                           .access = SF_ACCESS_SAMPLED,
+                           .binding = binding,
+                           .sampler = shape->source == SF_WINDOW_EXACT ? SF_SAMPLER_NEAREST : SF_SAMPLER_LINEAR};
+    return picture;
+}
+
 static void declare_picture(struct sf_graph *graph, const struct sf_window_shape *shape,
                             const struct sf_window_live *live, struct sf_window_resources *resources)
 {
     const float *background = shape->background;
-    bool pixels = shape->source == SF_WINDOW_PIXELS, exact = shape->source == SF_WINDOW_EXACT;
-    struct sf_use uses[2] = {{.resource = resources->target,
+    bool pixels = shape->source == SF_WINDOW_PIXELS;
+    const char *fragment = pixels ? "window/pixels.frag" : shape->beside ? "window/beside.frag" : "window/picture.frag";
+    struct sf_use uses[3] = {{.resource = resources->target,
                               .access = SF_ACCESS_COLOR,
                               .load = SF_LOAD_CLEAR,
                               .clear = {background[0], background[1], background[2], 1.0f}}};
@@ -155,20 +171,17 @@ static void declare_picture(struct sf_graph *graph, const struct sf_window_shape
                                            (uint64_t)shape->source_width * shape->source_height * sizeof(uint32_t));
         uses[1] = (struct sf_use){.resource = resources->pixels, .access = SF_ACCESS_STORAGE_READ, .binding = 0};
     } else {
-        resources->picture = declare_import(graph, "window.source", shape->source_format, shape->source_width,
-                                            shape->source_height, SF_ACCESS_SAMPLED);
-        uses[1] = (struct sf_use){.resource = resources->picture,
-                                  .access = SF_ACCESS_SAMPLED,
-                                  .binding = 0,
-                                  .sampler = exact ? SF_SAMPLER_NEAREST : SF_SAMPLER_LINEAR};
+        resources->picture = declare_source(graph, "window.source", shape, 0, &uses[1]);
     }
+    if (shape->beside)
+        resources->beside = declare_source(graph, "window.beside", shape, 1, &uses[2]);
     sf_graph_pass(graph, &(struct sf_pass_desc){.name = "window.picture",
                                                 .kind = SF_PASS_RASTER,
                                                 .uses = uses,
-                                                .use_count = 2,
+                                                .use_count = shape->beside ? 3 : 2,
                                                 .shader = "window/picture.vert",
-                                                .fragment = pixels ? "window/pixels.frag" : "window/picture.frag",
-                                                .constants = {(uint32_t)shape->tone, exact},
+                                                .fragment = fragment,
+                                                .constants = {(uint32_t)shape->tone, shape->source == SF_WINDOW_EXACT},
                                                 .constant_count = pixels ? 0 : 2,
                                                 .push = &live->picture,
                                                 .push_bytes = sizeof live->picture,
@@ -224,7 +237,8 @@ static void fill_picture(struct sf_window_graph *graph, const struct sf_window_i
 
     graph->live.picture = (struct sf_window_picture_push){
         .rect = {frame->x, frame->y, frame->width, frame->height},
-        .to_clip = {2.0f / (float)shape->width, 2.0f / (float)shape->height, exp2f(frame->exposure)},
+        .to_clip = {2.0f / (float)shape->width, 2.0f / (float)shape->height, exp2f(frame->exposure),
+                    frame->x + roundf(fminf(fmaxf(frame->wipe, 0.0f), 1.0f) * frame->width)},
         .size = {shape->source_width, shape->source_height},
     };
     graph->live.picture_draw[0] = there ? 4 : 0;
@@ -272,6 +286,8 @@ enum sf_status sf_window_graph_fill(struct sf_window_graph *graph, const struct 
     fill_ui(graph, input->frame->overlay ? input->frame->overlay : &nothing, vertices, corners, clips);
     if (resources->picture)
         sf_player_bind_image(graph->player, resources->picture, input->picture);
+    if (resources->beside)
+        sf_player_bind_image(graph->player, resources->beside, input->beside);
     sf_player_bind_image(graph->player, resources->font, input->font);
     return SF_OK;
 }

@@ -12,6 +12,7 @@
 struct sf_window_input {
     const struct sf_window_frame *frame;
     struct sf_gpu_image *picture; /* what frame->renderer shows; NULL: nothing. Rests in SF_ACCESS_SAMPLED */
+    struct sf_gpu_image *beside;  /* a second one of the same size and format, right of the wipe; NULL: none */
     uint32_t picture_width, picture_height;
     bool float_color;          /* RGBA32F, else RGBA16F */
     struct sf_gpu_image *font; /* R8, rests in SF_ACCESS_SAMPLED */
@@ -32,6 +33,7 @@ struct sf_window_shape {
     enum sf_window_source source;
     uint32_t source_width, source_height; /* at least 1 x 1 */
     enum sf_format source_format;         /* SF_FORMAT_NONE for SF_WINDOW_PIXELS */
+    uint32_t beside;                      /* 1: there are two pictures */
     enum sf_tone_mode tone;
     float background[3];
     uint32_t font_width, font_height;
@@ -47,6 +49,7 @@ struct sf_window_live {
 
 struct sf_window_resources {
     sf_resource target, picture, pixels, font, vertices, corners, clips; /* picture or pixels is 0 */
+    sf_resource beside;                                                  /* 0: one picture */
 };
 
 struct sf_window_graph {

@@ -50,6 +50,11 @@ expect 2 "did you mean 'light.raw'" capture "$scene" $small -o look/none.png --i
 expect 2 "light.map" capture "$scene" $small -o look/none.png --inspect nothing
 only look 6
 
+# Two methods side by side: what cannot be is said (the pixels are a matter of tests/window/test_window_wipe.sh).
+expect 2 "did you mean 'thick-larsson'" capture "$still" $small -o wipe.png --compare thick-larson
+expect 2 "--wipe says where" capture "$still" $small -o wipe.png --wipe 0.3
+expect 2 "name one of them" capture "$still" $small -o wipe.png --compare none --inspect light.raw
+
 # Limits of the device.
 limit=$(sed -n 's/.*"max_image_side": *\([0-9]*\).*/\1/p' devices.json | head -n 1)
 if [ "$limit" -lt 32768 ]; then

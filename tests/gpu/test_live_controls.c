@@ -68,9 +68,9 @@ struct made {
 
 static struct made made_by(const struct sf_renderer *renderer)
 {
-    return (struct made){renderer->stage.assembly,     sf_particles_player(renderer->particles),
-                         renderer->assets.shadow_map,  renderer->assets.method,
-                         renderer->assets.environment, renderer->assets.meshes.vertices};
+    return (struct made){renderer->sides[0].stage.assembly,     sf_particles_player(renderer->particles),
+                         renderer->sides[0].assets.shadow_map,  renderer->sides[0].assets.method,
+                         renderer->sides[0].assets.environment, renderer->sides[0].assets.meshes.vertices};
 }
 
 static bool begins(const char *text, const char *with)

@@ -378,7 +378,7 @@ static void test_lists_without_room(void **state)
 {
     struct sf_scene *scene = live_parse(crowd, NULL);
     struct sf_renderer *renderer = live_create(scene, &all);
-    struct sf_reference *reference = renderer->stage.assembly->state;
+    struct sf_reference *reference = renderer->sides[0].stage.assembly->state;
     struct picture roomy = live_picture(renderer, 12), crowded;
 
     (void)state;

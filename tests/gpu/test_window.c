@@ -173,6 +173,52 @@ static void check_pixels(struct stage *stage, const uint8_t *pixels, int side, i
         }
 }
 
+/* Two pictures: every pixel is that of the one on its side of the line, bit for bit, exact and scaled. */
+static void test_beside(void **state)
+{
+    static const float wipes[] = {0, 0.3f, 0.5f, 1, -2, 7, NAN};
+    static const float ends[] = {0, 0.3f, 0.5f, 1, 0, 1, 0};
+    static float light[2][SIDE * SIDE * 4];
+    static uint8_t alone[2][WIDTH * HEIGHT * 4];
+    struct sf_gpu_image *first;
+    struct stage stage;
+
+    (void)state;
+    setup(&stage);
+    make_light(light[0]);
+    for (int i = 0; i < SIDE * SIDE * 4; i++)
+        light[1][i] = light[0][SIDE * SIDE * 4 - 1 - i];
+    stage.frame.tone = "aces";
+    stage.frame.x = stage.frame.y = PAD;
+    for (float side = SIDE; side >= SIDE / 2; side -= SIDE / 2 - 5) {
+        int left = PAD, width = (int)side;
+
+        stage.frame.width = stage.frame.height = side;
+        for (int p = 1; p >= 0; p--) {
+            set_picture(&stage, light[p], true, SIDE, SIDE);
+            play(&stage);
+            memcpy(alone[p], stage.pixels, sizeof alone[p]);
+        }
+        first = stage.picture;
+        stage.picture = NULL;
+        set_picture(&stage, light[1], true, SIDE, SIDE);
+        stage.input.beside = stage.picture;
+        stage.input.picture = first;
+        for (size_t i = 0; i < SF_COUNT(wipes); i++) {
+            int line = left + (int)roundf(ends[i] * (float)width);
+
+            stage.frame.wipe = wipes[i];
+            play(&stage);
+            for (int y = 0; y < HEIGHT; y++)
+                for (int x = 0; x < WIDTH; x++)
+                    assert_memory_equal(stage.pixels + (y * WIDTH + x) * 4, alone[x >= line] + (y * WIDTH + x) * 4, 4);
+        }
+        stage.input.beside = NULL;
+        sf_gpu_image_destroy(&first);
+    }
+    finish(&stage);
+}
+
 static void test_pixels(void **state)
 {
     enum { FEW = 13 };
@@ -314,9 +360,10 @@ static void test_fit(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_tone),   cmocka_unit_test(test_senseless_light), cmocka_unit_test(test_scaled),
-        cmocka_unit_test(test_pixels), cmocka_unit_test(test_nothing),         cmocka_unit_test(test_misuse),
-        cmocka_unit_test(test_fit),
+        cmocka_unit_test(test_tone),   cmocka_unit_test(test_senseless_light),
+        cmocka_unit_test(test_scaled), cmocka_unit_test(test_beside),
+        cmocka_unit_test(test_pixels), cmocka_unit_test(test_nothing),
+        cmocka_unit_test(test_misuse), cmocka_unit_test(test_fit),
     };
     int skip = kit_probe();
 

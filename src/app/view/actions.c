@@ -157,6 +157,17 @@ void sf_view_save(struct sf_view *view, const char *path)
     }
 }
 
+/* The command with what stands right of the line; as it was when memory is out. */
+static char *with_beside(const struct sf_view *view, char *command)
+{
+    size_t length = strlen(command), room = length + SF_NAME_BYTES + 64;
+    char *longer = view->beside[0] ? realloc(command, room) : NULL;
+
+    if (longer) /* names of methods mean nothing to a shell */
+        snprintf(longer + length, room - length, " --compare %s --wipe %.9g", view->beside, (double)view->wipe.at);
+    return longer ? longer : command;
+}
+
 void sf_view_copy_command(struct sf_view *view)
 {
     char sets[SF_RIG_SETS][SF_RIG_SET_BYTES];
@@ -167,6 +178,7 @@ void sf_view_copy_command(struct sf_view *view)
 
     if (!command)
         return;
+    command = with_beside(view, command);
     sf_screen_copy(view->screen, command);
     sf_view_note(view, SF_LOG_INFO, "copied: %s", command);
     free(command);

@@ -125,6 +125,8 @@ static enum sf_hold press(struct sf_view *view, int button, float x, float y)
             return SF_HOLD_LIGHT;
         }
     }
+    if (button == 0 && sf_wipe_near(view, x, y))
+        return SF_HOLD_WIPE;
     if (button == 2 || (button == 0 && mods & GLFW_MOD_SHIFT))
         return SF_HOLD_PAN;
     return button == 1 ? SF_HOLD_LOOK : SF_HOLD_ORBIT;
@@ -145,6 +147,9 @@ static void take_mouse(struct sf_view *view)
     for (int button = 0; button < 3 && view->hold == SF_HOLD_NONE; button++)
         if (sf_ui_mouse_clicked(button) && !sf_ui_takes_mouse() && in_picture(view, x, y))
             view->hold = press(view, button, x, y);
+    if (view->hold == SF_HOLD_WIPE ||
+        (view->hold == SF_HOLD_NONE && !sf_ui_takes_mouse() && in_picture(view, x, y) && sf_wipe_near(view, x, y)))
+        sf_ui_mouse_sideways();
     if (wheel != 0 && !sf_ui_takes_mouse() && in_picture(view, x, y) && !sf_view_looked(view)->values) {
         sf_rig_dolly(&view->rig, wheel);
         sf_view_moved(view);
@@ -153,13 +158,15 @@ static void take_mouse(struct sf_view *view)
         return;
     if (view->hold == SF_HOLD_LIGHT)
         drag_light(view, x, y);
+    else if (view->hold == SF_HOLD_WIPE)
+        sf_wipe_drag(view, x);
     else if (view->hold == SF_HOLD_ORBIT)
         sf_rig_orbit(&view->rig, dx, dy, height);
     else if (view->hold == SF_HOLD_PAN)
         sf_rig_pan(&view->rig, dx, dy, height);
     else if (view->hold == SF_HOLD_LOOK)
         sf_rig_look(&view->rig, dx, dy, height);
-    if (view->hold != SF_HOLD_LIGHT && view->hold != SF_HOLD_LOOKED)
+    if (view->hold != SF_HOLD_LIGHT && view->hold != SF_HOLD_LOOKED && view->hold != SF_HOLD_WIPE)
         sf_view_moved(view);
 }
 
@@ -324,6 +331,12 @@ static void plain_key(struct sf_view *view, int key, int mods)
         view->panels = true;
         sf_against_begin(view);
         break;
+    case GLFW_KEY_M:
+        if (mods & GLFW_MOD_SHIFT)
+            sf_wipe_next(view);
+        else
+            sf_wipe_toggle(view);
+        break;
     case GLFW_KEY_F:
         frame_smoke(view);
         break;
@@ -364,7 +377,11 @@ static void take_key(struct sf_view *view, const struct sf_key *key)
     } else if (view->hold != SF_HOLD_LOOK) { /* else they fly */
         plain_key(view, key->key, key->mods);
         time_key(view, key->key);
-        light_key(view, key->key);
+        if (key->mods & GLFW_MOD_SHIFT && sf_wipe_seen(view) &&
+            (key->key == GLFW_KEY_LEFT || key->key == GLFW_KEY_RIGHT))
+            sf_wipe_key(view, key->key == GLFW_KEY_RIGHT);
+        else
+            light_key(view, key->key);
     }
 }
 

@@ -75,6 +75,7 @@ static void draw_scene(struct sf_view *view)
     if (view->model.error[0])
         sf_ui_text_wrapped(sf_ui_error, view->model.error);
     choose(view, "method", "method");
+    sf_panel_wipe(view);
     if (sf_ui_child_begin("folder", 7 * sf_ui_line()))
         list_folder(view);
     sf_ui_child_end();

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "../console.h"
+#include "../wipe.h"
 #include "view.h"
 
 static const uint64_t SEEK_NS = 40 * 1000000ull; /* of a long way, until the window answers again */
@@ -16,42 +17,90 @@ bool sf_picture_pending(const struct sf_view *view)
     return view->flight_count > 0;
 }
 
+/* The pictures of a ticket: the scene's method's, and the second's when there is one. A second method that cannot is
+ * given up. */
+static enum sf_status wait_for(struct sf_view *view, uint64_t ticket, struct sf_frame frames[2])
+{
+    enum sf_status status = sf_renderer_wait(view->renderer, ticket, &frames[0]), other = SF_OK;
+
+    frames[1] = (struct sf_frame){.progress = 1};
+    if (view->beside[0] && !status)
+        other = sf_renderer_wait(view->renderer, ticket | SF_BESIDE, &frames[1]);
+    if (other == SF_ERROR_DEVICE) { /* it has been said why */
+        sf_wipe_give_up(view);
+        frames[1] = (struct sf_frame){.progress = 1};
+        return SF_OK;
+    }
+    return status ? status : other;
+}
+
+/* Sum of the passes that draw. */
+static float drawing_ms(const struct sf_pass_timing *timings, uint32_t count)
+{
+    static const char simulation[] = "sim.";
+    uint64_t ns = 0;
+
+    for (uint32_t i = 0; i < count; i++)
+        if (strncmp(timings[i].name, simulation, sizeof simulation - 1) != 0)
+            ns += timings[i].end_ns - timings[i].begin_ns;
+    return (float)ns * NS_TO_MS;
+}
+
+/* Hands a frame that came back to the files' writer, as it is seen. */
+static enum sf_status store(struct sf_view *view, const struct sf_frame frames[2])
+{
+    struct sf_frame seen = frames[0];
+    char stem[SF_NAME_BYTES];
+    enum sf_status status = frames[1].width > 0 ? sf_wipe_join(&seen, &frames[1], view->wipe.at, &view->joined) : SF_OK;
+
+    if (status)
+        return status;
+    sf_view_stem(view, stem, sizeof stem);
+    return sf_shots_take(view->shots, stem, &seen, view->model.info.tone, view->model.info.exposure,
+                         view->model.info.fps, view->model.info.hash);
+}
+
 /* Takes up the oldest. */
 static enum sf_status land(struct sf_view *view)
 {
     struct sf_flight flight = view->flights[0];
-    const struct sf_pass_timing *timings;
-    struct sf_frame frame;
-    uint32_t count = 0;
+    const struct sf_pass_timing *timings, *others;
+    struct sf_frame frames[2];
+    const struct sf_frame *frame = &frames[0];
+    uint32_t count = 0, other_count = 0;
     uint64_t now;
     enum sf_status status;
 
     view->flight_count--;
     memmove(&view->flights[0], &view->flights[1], view->flight_count * sizeof flight);
-    status = sf_renderer_wait(view->renderer, flight.ticket, &frame);
+    status = wait_for(view, flight.ticket, frames);
     if (status == SF_ERROR_DEVICE) { /* the method cannot; it has been said why */
         view->progress = 1;
         return SF_OK;
     }
     if (!status)
         status = sf_renderer_timings(view->renderer, flight.ticket, &timings, &count);
+    if (!status && view->beside[0])
+        status = sf_renderer_timings(view->renderer, flight.ticket | SF_BESIDE, &others, &other_count);
     if (status)
         return status;
+    view->wipe.ms[0] = drawing_ms(timings, count);
+    view->wipe.ms[1] = other_count > 0 ? drawing_ms(others, other_count) : 0;
     now = sf_now_ns();
-    view->live = frame.live;
-    view->dropped = frame.dropped;
-    memcpy(view->bounds_min, frame.bounds_min, sizeof view->bounds_min);
-    memcpy(view->bounds_max, frame.bounds_max, sizeof view->bounds_max);
+    view->live = frame->live;
+    view->dropped = frame->dropped;
+    memcpy(view->bounds_min, frame->bounds_min, sizeof view->bounds_min);
+    memcpy(view->bounds_max, frame->bounds_max, sizeof view->bounds_max);
     view->settle = true;
     sf_stats_add(&view->stats, timings, count, flight.cpu_ms,
                  view->landed_ns ? (float)(now - view->landed_ns) * NS_TO_MS : 0, flight.record_ms);
     view->landed_ns = now;
-    sf_against_land(view, &frame);
+    sf_against_land(view, frame);
     if (view->looking.name[0] && strcmp(view->looking.name, view->inspected) == 0)
-        sf_looking_take(&view->looking, &frame);
+        sf_looking_take(&view->looking, frame);
     /* A frame that cannot be kept (it has been said why) ends the recording, not the viewer. */
-    if (sf_shots_recording(view->shots) && view->options.returned && frame.progress >= 1 &&
-        sf_picture_store(view, &frame) != SF_OK)
+    if (sf_shots_recording(view->shots) && view->options.returned && frames[0].progress >= 1 &&
+        frames[1].progress >= 1 && store(view, frames) != SF_OK)
         sf_view_record(view);
     return SF_OK;
 }
@@ -63,15 +112,6 @@ enum sf_status sf_picture_collect(struct sf_view *view, unsigned left)
     while (view->flight_count > left && !status)
         status = land(view);
     return status;
-}
-
-enum sf_status sf_picture_store(struct sf_view *view, const struct sf_frame *frame)
-{
-    char stem[SF_NAME_BYTES];
-
-    sf_view_stem(view, stem, sizeof stem);
-    return sf_shots_take(view->shots, stem, frame, view->model.info.tone, view->model.info.exposure,
-                         view->model.info.fps, view->model.info.hash);
 }
 
 /* ---- the renderer as it should be ---- */
@@ -124,6 +164,30 @@ static enum sf_status set_options(struct sf_view *view, const struct sf_renderer
     return SF_OK;
 }
 
+/* The second method that is wanted. One that cannot be (it has been said why) is no reason to stop. */
+static enum sf_status update_beside(struct sf_view *view)
+{
+    const char *wanted = view->wipe.on ? view->wipe.method : "";
+    enum sf_status status = SF_OK;
+
+    if (strcmp(wanted, view->beside) == 0)
+        return SF_OK;
+    status = sf_picture_collect(view, 0);
+    if (status)
+        return status;
+    status = sf_renderer_set_beside(view->renderer, wanted[0] ? wanted : NULL);
+    if (status == SF_ERROR_DEVICE_LOST || status == SF_ERROR_INTERNAL)
+        return status;
+    if (status) {
+        sf_wipe_give_up(view);
+        return update_beside(view); /* without one */
+    }
+    snprintf(view->beside, sizeof view->beside, "%s", wanted);
+    view->dirty = view->dirty || wanted[0];
+    view->settle = true;
+    return SF_OK;
+}
+
 /* An image that another method does not have, a size that the device cannot take, or no memory for a recording is no
  * reason to stop: the first of them that is new is given up. */
 static enum sf_status update_options(struct sf_view *view)
@@ -133,7 +197,12 @@ static enum sf_status update_options(struct sf_view *view)
 
     if (status != SF_ERROR_USAGE && status != SF_ERROR_MEMORY)
         return status;
-    if (wanted.inspect && strcmp(wanted.inspect, view->inspected) != 0) {
+    if (status == SF_ERROR_MEMORY && view->beside[0]) {
+        sf_wipe_give_up(view);
+        status = update_beside(view);
+        if (status)
+            return status;
+    } else if (wanted.inspect && strcmp(wanted.inspect, view->inspected) != 0) {
         sf_view_look(view, "");
     } else if (wanted.width != view->options.width || wanted.height != view->options.height) {
         view->refused[0] = wanted.width;
@@ -167,6 +236,22 @@ static enum sf_status give_scene(struct sf_view *view, const struct sf_scene *sc
     return SF_OK;
 }
 
+/* The scene that cannot be with both methods may be with its own; else both go on with the old one. */
+static enum sf_status give_without_beside(struct sf_view *view, const struct sf_scene *scene)
+{
+    enum sf_status status = sf_renderer_set_beside(view->renderer, NULL), back;
+
+    if (!status)
+        status = give_scene(view, scene);
+    if (!status) {
+        view->beside[0] = '\0';
+        sf_wipe_give_up(view);
+        return SF_OK;
+    }
+    back = sf_renderer_set_beside(view->renderer, view->beside);
+    return back ? back : status;
+}
+
 enum sf_status sf_picture_accept(void *user, const struct sf_scene *scene)
 {
     struct sf_view *view = user;
@@ -178,6 +263,8 @@ enum sf_status sf_picture_accept(void *user, const struct sf_scene *scene)
         status = update_options(view);
         status = status ? status : give_scene(view, scene);
     }
+    if (status && status != SF_ERROR_DEVICE_LOST && view->beside[0])
+        status = give_without_beside(view, scene);
     if (status)
         return status;
     drop_coarse(view);
@@ -244,7 +331,8 @@ static enum sf_status govern(struct sf_view *view)
 {
     const struct sf_stats *stats = &view->stats;
     unsigned newest = (stats->next + SF_STATS_FRAMES - 1) % SF_STATS_FRAMES, before = view->governor.level;
-    double cost = stats->frame_count ? (double)stats->gpu_ms[newest] + stats->cpu_ms[newest] : 0;
+    double other = view->beside[0] ? (double)view->wipe.ms[1] : 0;
+    double cost = stats->frame_count ? (double)stats->gpu_ms[newest] + stats->cpu_ms[newest] + other : 0;
 
     if (sf_shots_recording(view->shots) || view->looking.name[0]) {
         view->moved = false;
@@ -313,14 +401,14 @@ static enum sf_status draw(struct sf_view *view, struct sf_flight *flight)
 }
 
 /* As the scene says, at full quality, with everything back that `*drawing` (of `shooting` and `comparing`) asks for,
- * handed to `take`. A picture that takes many steps takes as many turns of the loop. Then, and when it cannot be, it is
+ * handed to `take`, the second method's behind the scene's. A picture that takes many steps takes as many turns of the loop. Then, and when it cannot be, it is
  * `*due` no more. */
 static enum sf_status draw_once(struct sf_view *view, bool *due, bool *drawing,
-                                void (*take)(struct sf_view *view, const struct sf_frame *frame), bool *drawn)
+                                void (*take)(struct sf_view *view, const struct sf_frame *frames), bool *drawn)
 {
     struct sf_renderer_options wanted;
     struct sf_flight flight;
-    struct sf_frame frame;
+    struct sf_frame frames[2];
     enum sf_status status = view->governor.level ? set_level(view, 0) : SF_OK;
 
     if (!status && !*drawing) {
@@ -335,21 +423,31 @@ static enum sf_status draw_once(struct sf_view *view, bool *due, bool *drawing,
     if (!status)
         status = draw(view, &flight);
     if (!status)
-        status = sf_renderer_wait(view->renderer, flight.ticket, &frame);
-    if (!status && frame.progress < 1) {
+        status = wait_for(view, flight.ticket, frames);
+    if (!status && (frames[0].progress < 1 || (view->shooting && frames[1].progress < 1))) {
         *drawn = true;
         return SF_OK;
     }
     *due = *drawing = false;
     if (!status)
-        take(view, &frame);
+        take(view, frames);
     wanted = wanted_options(view);
     return status && status != SF_ERROR_DEVICE ? status : set_options(view, &wanted);
 }
 
-static void store(struct sf_view *view, const struct sf_frame *frame)
+static void shoot(struct sf_view *view, const struct sf_frame *frames)
 {
-    sf_picture_store(view, frame);
+    store(view, frames);
+}
+
+/* After a failure that may be the second method's: it is given up, and the next turn tries without. */
+static enum sf_status fall_back(struct sf_view *view, enum sf_status status)
+{
+    if (!view->beside[0] || status == SF_ERROR_DEVICE_LOST)
+        return status;
+    sf_wipe_give_up(view);
+    view->dirty = true;
+    return update_beside(view);
 }
 
 enum sf_status sf_picture_update(struct sf_view *view, bool *drawn)
@@ -359,7 +457,9 @@ enum sf_status sf_picture_update(struct sf_view *view, bool *drawn)
 
     *drawn = false;
     view->comparing = view->comparing && sf_against_due(view); /* it may have been called off */
-    status = update_options(view);
+    status = update_beside(view);
+    if (!status)
+        status = update_options(view);
     if (!status)
         status = govern(view);
     /* A way that was begun is gone to its end, also when that is the frame drawn last: the simulation has left it. */
@@ -368,9 +468,9 @@ enum sf_status sf_picture_update(struct sf_view *view, bool *drawn)
         return status;
     status = go_to(view, view->playback.frame, &there);
     if (status || !there)
-        return status;
+        return status ? fall_back(view, status) : SF_OK;
     if (view->shot && !sf_shots_recording(view->shots))
-        return draw_once(view, &view->shot, &view->shooting, store, drawn);
+        return draw_once(view, &view->shot, &view->shooting, shoot, drawn);
     if (sf_against_due(view) && !sf_shots_recording(view->shots))
         return draw_once(view, &view->against.wanted, &view->comparing, sf_against_take, drawn);
     view->shot = view->shooting = false; /* a recording has the picture already */
@@ -378,7 +478,7 @@ enum sf_status sf_picture_update(struct sf_view *view, bool *drawn)
     if (!status)
         status = draw(view, &view->flights[view->flight_count]);
     if (status)
-        return status;
+        return fall_back(view, status);
     view->flight_count++;
     view->dirty = false;
     view->moved = false;

@@ -255,8 +255,7 @@ bool sf_ui_raw_hovered(void) { return ImGui::IsItemHovered(ImGuiHoveredFlags_All
 void sf_ui_raw_place(float *x, float *y) { *x = ImGui::GetCursorScreenPos().x; *y = ImGui::GetCursorScreenPos().y; }
 void sf_ui_raw_canvas(const char *name, float width, float height)
 { ImGui::InvisibleButton(name, ImVec2(width, height)); }
-void sf_ui_draw_behind(void) { self.behind = true; }
-void sf_ui_draw_panel(void) { self.behind = false; }
+void sf_ui_draw_behind(void) { self.behind = true; } void sf_ui_draw_panel(void) { self.behind = false; }
 void sf_ui_draw_clip(float x, float y, float width, float height)
 { target()->PushClipRect(ImVec2(x, y), ImVec2(x + width, y + height), true); }
 void sf_ui_draw_unclip(void) { target()->PopClipRect(); }
@@ -287,6 +286,7 @@ float sf_ui_wheel(void) { return io().MouseWheel; }
 bool sf_ui_mouse_down(int button) { return ImGui::IsMouseDown(button); }
 bool sf_ui_mouse_clicked(int button) { return ImGui::IsMouseClicked(button); }
 bool sf_ui_mouse_double(int button) { return ImGui::IsMouseDoubleClicked(button); }
+void sf_ui_mouse_sideways(void) { ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW); }
 void sf_ui_raw_size(float size[2]) { size[0] = io().DisplaySize.x; size[1] = io().DisplaySize.y; }
 void sf_ui_feed_size(uint32_t width, uint32_t height) { io().DisplaySize = ImVec2((float)width, (float)height); }
 void sf_ui_feed_mouse(float x, float y, bool down) { io().MousePos = ImVec2(x, y); io().MouseDown[0] = down; }

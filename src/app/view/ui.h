@@ -137,6 +137,8 @@ bool sf_ui_mouse_down(int button); /* 0 left, 1 right, 2 middle */
 bool sf_ui_mouse_clicked(int button);
 bool sf_ui_mouse_double(int button);
 
+void sf_ui_mouse_sideways(void); /* in this frame its pointer says that it drags to the sides */
+
 /* A key as the window numbers it, before begin, for what was pressed and let go since the last one (ImGui sees only what
  * is held when a frame begins, and slow frames would lose keys); after end, as it is now. */
 void sf_ui_feed_key(int key, bool down, bool control, bool shift);

@@ -117,6 +117,7 @@ static void draw_panels(struct sf_view *view, uint32_t width, uint32_t height)
         sf_panel_bar(view, 0, (float)height - bar, (float)width - side, bar);
     }
     sf_input_draw_lights(view);
+    sf_wipe_draw(view);
     sf_panel_looked(view);
     sf_panel_truth_over(view);
     sf_panel_notes(view);
@@ -165,6 +166,7 @@ static enum sf_status show(struct sf_view *view, const struct sf_overlay *overla
                                     .renderer = view->renderer,
                                     .tone = view->model.info.tone,
                                     .exposure = view->model.info.exposure,
+                                    .wipe = view->wipe.at,
                                     .overlay = overlay};
     enum sf_status status;
 
@@ -388,6 +390,8 @@ static enum sf_status open_all(struct sf_view *view)
     enum sf_status status = open_scene(view);
 
     if (!status)
+        status = sf_wipe_open(view);
+    if (!status)
         status = sf_screen_create("sfumato", view->settings.width, view->settings.height,
                                   arguments->fullscreen || view->settings.fullscreen, &view->log, &view->screen);
     if (!status)
@@ -460,6 +464,7 @@ static void close_all(struct sf_view *view)
     sf_against_finish(view);
     sf_graph_data_destroy(&view->graph);
     sf_looking_finish(&view->looking);
+    free(view->joined);
     sf_shots_destroy(&view->shots);
     sf_reload_destroy(&view->reload);
     sf_picture_close(view);

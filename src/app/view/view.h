@@ -55,6 +55,14 @@ struct sf_looking {
     float zoom, pan_x, pan_y; /* 1: fits the picture's place; pan in px */
 };
 
+/* A second method beside the scene's, right of a line. */
+struct sf_wipe {
+    bool on;                    /* wanted; sf_view.beside is what there is */
+    char method[SF_NAME_BYTES]; /* "": none was chosen yet */
+    float at;                   /* of the picture's width: the line */
+    float ms[2];                /* the device's time for the last picture of each, without the simulation; 0: unknown */
+};
+
 /* What a picture follows from. */
 struct sf_subject {
     uint64_t content; /* sf_view.content */
@@ -90,7 +98,7 @@ struct sf_against {
 };
 
 /* What the mouse, pressed in the picture, is doing. */
-enum sf_hold { SF_HOLD_NONE, SF_HOLD_ORBIT, SF_HOLD_PAN, SF_HOLD_LOOK, SF_HOLD_LIGHT, SF_HOLD_LOOKED };
+enum sf_hold { SF_HOLD_NONE, SF_HOLD_ORBIT, SF_HOLD_PAN, SF_HOLD_LOOK, SF_HOLD_LIGHT, SF_HOLD_LOOKED, SF_HOLD_WIPE };
 
 /* For --report. */
 struct sf_view_count {
@@ -147,6 +155,9 @@ struct sf_view {
     bool comparing; /* the picture that is to be compared is being drawn */
     struct sf_looking looking;
     struct sf_against against;
+    struct sf_wipe wipe;
+    char beside[SF_NAME_BYTES];      /* the second method that the renderer has; "": none */
+    void *joined;                    /* memory for pictures of both */
     struct sf_graph_data *graph;     /* graph_data.h; read off at graph->version; sf_graph_data_destroy at the end */
     char look_search[SF_NAME_BYTES]; /* in the graph's resources */
     int words_as;                    /* of a buffer: 0 what is likely, 1 float, 2 uint, 3 hex */
@@ -186,8 +197,6 @@ enum sf_status sf_picture_accept(void *user, const struct sf_scene *scene);
 enum sf_status sf_picture_update(struct sf_view *view, bool *drawn);
 /* Takes up pictures that are done: all but `left` of them are waited for. */
 enum sf_status sf_picture_collect(struct sf_view *view, unsigned left);
-/* Hands a frame that came back to the files' writer. */
-enum sf_status sf_picture_store(struct sf_view *view, const struct sf_frame *frame);
 /* Something of the picture is still on its way. */
 bool sf_picture_pending(const struct sf_view *view);
 
@@ -207,6 +216,19 @@ void sf_against_aim(struct sf_view *view);
 void sf_against_land(struct sf_view *view, const struct sf_frame *frame);
 bool sf_against_busy(const struct sf_view *view);
 void sf_against_finish(struct sf_view *view);
+
+/* ---- wipe.c: two methods side by side ---- */
+enum sf_status sf_wipe_open(struct sf_view *view); /* what the command line says; the model is there */
+void sf_wipe_toggle(struct sf_view *view);
+void sf_wipe_next(struct sf_view *view); /* another second method; the first time the one behind the scene's */
+void sf_wipe_choose(struct sf_view *view, const char *method);
+void sf_wipe_give_up(struct sf_view *view);                      /* it cannot be; why has been said */
+bool sf_wipe_seen(const struct sf_view *view);                   /* the line is in the picture */
+bool sf_wipe_near(const struct sf_view *view, float x, float y); /* px of the window: the mouse can take it */
+void sf_wipe_drag(struct sf_view *view, float x);
+void sf_wipe_key(struct sf_view *view, bool right);
+void sf_wipe_draw(struct sf_view *view);
+void sf_panel_wipe(struct sf_view *view); /* in the Scene tab */
 
 /* ---- actions (actions.c); failures have been said through the log ---- */
 void sf_view_set(struct sf_view *view, const char *assignment);

@@ -206,6 +206,18 @@ void sf_renderer_set_view(struct sf_renderer *renderer, const struct sf_camera_v
  * the middle. SF_ERROR_USAGE: the frame has no such pixel, or the renderer's options are without `probe`. */
 enum sf_status sf_renderer_set_probe(struct sf_renderer *renderer, uint32_t x, uint32_t y);
 
+/* A second method's picture of every frame that follows, drawn beside the scene's from the same particles, eye, settings
+ * and options: the simulation is stepped once. A picture is the same, bit for bit, as that of a renderer whose scene has
+ * the method. NULL: none (at first), and then it costs nothing. The first picture goes on as it was; the second follows
+ * sf_renderer_set_scene (which then fails when either cannot be) and sf_renderer_set_options. Tickets given before are
+ * void for the second. SF_ERROR_USAGE: no such method; SF_ERROR_MEMORY and what else making a renderer for it may give.
+ * When it fails, everything stays as it was. Where the two methods take different numbers of steps (see `progressive`)
+ * the one that is finished waits for the other. `inspect`, `particles` and sf_renderer_graph_print are the first's. */
+enum sf_status sf_renderer_set_beside(struct sf_renderer *renderer, const char *method);
+/* `ticket | SF_BESIDE` names the second method's picture in sf_renderer_wait and sf_renderer_timings (its own passes,
+ * without the simulation's). */
+#define SF_BESIDE (UINT64_C(1) << 63)
+
 /* Steps the simulation up to just before frame number `frame` (from the start when it lies behind): for long ways, so
  * that a host can show progress. `progress` (may be NULL) is called now and then with steps done and steps to do; false
  * stops with SF_ERROR_INTERRUPTED. */
@@ -218,7 +230,8 @@ enum sf_status sf_renderer_refine(struct sf_renderer *renderer, uint32_t frame, 
  * the picture takes many steps, it waits for all but the last two. */
 enum sf_status sf_renderer_render(struct sf_renderer *renderer, uint32_t frame, uint64_t *ticket);
 
-/* How far the picture that was queued last has come, 0..1; 1: it is finished. Below 1 only with `progressive`. */
+/* How far the picture that was queued last has come, 0..1; 1: it is finished; of two (sf_renderer_set_beside) the one that
+ * has come less far. Below 1 only with `progressive`. */
 float sf_renderer_progress(const struct sf_renderer *renderer);
 
 /* A sphere of smoke as the simulation left it for a frame: docs/scene.md, "Particles". */
@@ -244,7 +257,7 @@ struct sf_probe_point {
 struct sf_frame {
     uint32_t frame, width, height;
     double time;                /* s */
-    float progress;             /* sf_renderer_progress, of this one */
+    float progress;             /* as sf_renderer_progress, of this picture alone */
     struct sf_camera_view view; /* the eye that it was drawn from */
     const uint16_t *color; /* [height][width][4] linear RGBA half, premultiplied, row 0 on top; NULL when float_color */
     const float *color_float;
@@ -416,6 +429,9 @@ struct sf_window_frame {
     struct sf_renderer *renderer; /* of the same device, made with `shown`: its last picture; NULL: none */
     const char *tone;             /* as in sf_frame_write_png */
     float exposure;               /* stops */
+    /* With a second method's picture (sf_renderer_set_beside): share of the width, rounded to whole px, that shows the
+     * first method; right of it stands the second. 0..1; without a second one not looked at. */
+    float wipe;
     const uint8_t *pixels; /* [pixels_height][pixels_width][4] sRGB, drawn in place of the renderer's; NULL: none */
     uint32_t pixels_width, pixels_height;
     const struct sf_overlay *overlay; /* may be NULL */
