@@ -10,6 +10,7 @@ layout(set = 0, binding = 1, std430) writeonly buffer After { uvec4 after[]; };
 layout(set = 0, binding = 2, std430) buffer Counts { sf_particle_counts counts; };
 layout(set = 0, binding = 3, std430) readonly buffer Triangles { sf_sim_triangle triangles[]; };
 layout(set = 0, binding = 4, std430) readonly buffer Listed { uvec4 listed[]; };
+layout(set = 0, binding = 5, std430) readonly buffer Births { sf_sim_births births; };
 
 const float TAU = 6.28318531;
 
@@ -150,10 +151,10 @@ void main()
     if (birth < now.births && at < counts.capacity) {
         uint which = 0u;
 
-        while (which + 1u < now.record_count && now.records[which + 1u].first <= birth)
+        while (which + 1u < now.record_count && births.records[which + 1u].first <= birth)
             which++;
-        sf_sim_record record = now.records[which];
-        sf_sim_emitter emitter = now.emitters[record.emitter];
+        sf_sim_record record = births.records[which];
+        sf_sim_emitter emitter = births.emitters[record.emitter];
         uint number = birth - record.first, id = now.first_id + birth;
         float moment = clamp(record.begin.w + float(number) * record.end.w, 0.0, 1.0);
         float rest = (1.0 - moment) * now.dt;

@@ -13,13 +13,14 @@
 #include <stdint.h>
 #include "base/array.h"
 #include "base/log.h"
+#include "scene/timeline.h"
 #include "sfumato/sfumato.h"
 
 enum {
     SF_LIGHTS_MAX = 8,
     SF_OBJECTS_MAX = 64,
     SF_MESHES_MAX = 16,
-    SF_EMITTERS_MAX = 16,
+    SF_EMITTERS_MAX = 128,
     SF_FORCES_MAX = 16,
     SF_RAMP_MAX = 16,
     SF_PATH_MAX = 64, /* keyframes of a camera or an emitter's path */
@@ -54,6 +55,8 @@ struct sf_light {
     float position[3];  /* point, spot */
     float inner, outer; /* spot: half angles in deg; smoothstep of the cosine between them */
     bool shadows;
+    const struct sf_timing *timing; /* of an effect's step: its strength multiplies the intensity; NULL: always on */
+    float flicker, frequency;       /* of an effect's step: share of it that comes and goes, so often a second */
 };
 
 enum sf_object_kind { SF_OBJECT_PLANE, SF_OBJECT_BOX, SF_OBJECT_SPHERE, SF_OBJECT_CYLINDER, SF_OBJECT_MESH };
@@ -141,6 +144,10 @@ struct sf_emitter {
     bool path_loop;
     struct sf_listed *list;
     uint32_t list_count;
+    /* Of an effect's step: `start`, `duration` and the path count on its innermost clock, and its strength multiplies
+     * the rate. NULL: a scene's own, on the simulation's clock. */
+    const struct sf_timing *timing;
+    const char *origin; /* where it comes from, for messages; NULL: the scene's list */
 };
 
 enum sf_force_kind {

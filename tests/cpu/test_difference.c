@@ -311,6 +311,7 @@ static void trace_graph(const struct sf_scene *scene, uint64_t *hash)
 static void trace_sim(const struct sf_scene *scene, uint64_t *hash)
 {
     static struct sf_sim_now now;
+    static struct sf_sim_births births;
     struct sf_sim_layout layout;
     struct sf_particle_counts counts;
     struct sf_graph *graph = NULL;
@@ -323,9 +324,11 @@ static void trace_sim(const struct sf_scene *scene, uint64_t *hash)
     sf_sim_layout_fill(scene, &layout);
     STIR(hash, layout);
     for (uint64_t step = 0; step < 100; step += 1 + step / 8) {
-        size_t bytes = sf_sim_feed(scene, &layout, step, &now);
+        size_t bytes = sf_sim_feed(scene, &layout, step, &now, &births);
 
         stir(hash, &now, bytes);
+        stir(hash, births.emitters, scene->emitter_count * sizeof births.emitters[0]);
+        stir(hash, births.records, now.record_count * sizeof births.records[0]);
     }
     struct sf_particle *particles = calloc(layout.first_total + layout.listed_total + 1, sizeof *particles);
     struct sf_sim_triangle *triangles = calloc(layout.triangle_total + 1, sizeof *triangles);
