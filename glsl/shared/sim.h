@@ -55,6 +55,7 @@ struct sf_sim_emitter {
     SF_VEC4(change); /* growth, m/s; 3 dilution; fade in; fade out (shares of life) */
     SF_VEC4(turn);   /* spin, rad/s; over a whole step: exp(-cooling dt), and what buoyancy's K s and K s^2 come to (see
                         motion.glsl) */
+    SF_VEC4(facing); /* xy: cosine and sine of its turn about +y */
     SF_UINT(kind);
     SF_UINT(surface);
     SF_UINT(triangles); /* mesh: first element in the buffer of triangles, and how many */

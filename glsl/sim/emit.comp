@@ -93,6 +93,11 @@ vec3 point_on_mesh(uint first, uint count, uint pick, vec2 r, out vec3 normal)
     return vec3(triangle.x, triangle.y, triangle.z) + edge1 * r.x + edge2 * r.y;
 }
 
+vec3 turned(vec3 v, vec2 facing)
+{
+    return vec3(facing.x * v.x + facing.y * v.z, v.y, facing.x * v.z - facing.y * v.x);
+}
+
 // Where it is born, relative to the emitter, and which way is outward there.
 vec3 birth_place(sf_sim_emitter emitter, uint id, out vec3 outward)
 {
@@ -115,10 +120,12 @@ vec3 birth_place(sf_sim_emitter emitter, uint id, out vec3 outward)
             place = reach * (2.0 * r - 1.0);
             normal = dot(place, place) > 0.0 ? normalize(place) : vec3(0.0, 1.0, 0.0);
         }
-        outward = normal;
+        place = turned(place, emitter.facing.xy);
+        outward = turned(normal, emitter.facing.xy);
     } else {
         place = point_on_mesh(emitter.triangles, emitter.triangle_count, sf_random_u32(now.seed, id, SF_RANDOM_FACE), r.xy, normal) * reach.x;
-        outward = normal;
+        place = turned(place, emitter.facing.xy);
+        outward = turned(normal, emitter.facing.xy);
     }
     return place;
 }

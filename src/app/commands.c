@@ -22,7 +22,8 @@ static const char *const graph_formats[] = {"text", "dot", "json", NULL};
 static const char *const texture_kinds[] = {"fbm", "turbulence", "cellular", "dispersed", NULL};
 static const char *const texture_channels[] = {"all", "color", "alpha", "normal", "height", NULL};
 static const char *const texture_bits[] = {"8", "16", NULL};
-static const char *const params_formats[] = {"text", "json-schema", "markdown", NULL};
+static const char *const params_formats[] = {"text",          "json-schema",     "markdown", "effect-text",
+                                             "effect-schema", "effect-markdown", NULL};
 
 static const struct sf_option common_options[] = {
     {"verbose", 'v', SF_OPTION_COUNT, FIELD(verbose), .doc = "say more; twice: say everything"},
@@ -215,6 +216,8 @@ static const struct sf_option *const graph_tables[] = {graph_options, size_optio
 static const struct sf_option *const params_tables[] = {params_options, common_options, NULL};
 static const struct sf_option *const check_tables[] = {scene_options, common_options, NULL};
 
+static const struct sf_option *const effect_tables[] = {common_options, NULL};
+
 static const char *const capture_notes[] = {
     "Without -o the files are named after the scene, in the current folder. Ctrl-C finishes the frame in hand.",
     "  sfumato capture scenes/plume.json -o out/plume.####.exr -o out/plume.####.png --frames 0-95", NULL};
@@ -227,6 +230,8 @@ static const char *const texture_notes[] = {
     "  sfumato texture out/puffs.exr out/puffs.png --tiles 4x4 -s 128x128 --loop 16", NULL};
 static const char *const graph_notes[] = {"  sfumato graph scenes/plume.json --format dot | dot -Tsvg > graph.svg",
                                           NULL};
+
+static const char *const effect_notes[] = {"  sfumato effect scenes/effects/*.json", NULL};
 
 static const char *const view_notes[] = {
     "Without SCENE: scenes/plume.json, or the last one. ? lists the keys, Tab hides the panels.", NULL};
@@ -257,4 +262,6 @@ const struct sf_command sf_commands[] = {
      sf_params_run},
     {"check", "SCENE...", "Checks scene files and says what is wrong with them.", NULL, check_tables, 1, SIZE_MAX,
      sf_check_run},
+    {"effect", "EFFECT...", "Checks effect files and lists what they do, and when.", effect_notes, effect_tables, 1,
+     SIZE_MAX, sf_effect_run},
     {.name = NULL}};

@@ -157,6 +157,7 @@ static enum sf_status record_picture(struct sf_renderer *renderer, struct sf_que
     memcpy(objects, assembly->drawn.objects, sizeof assembly->drawn.objects);
     sf_matrix_transpose(filled.world_to_view, queued->world_to_camera);
     sf_matrix_transpose(filled.world_to_clip, queued->world_to_clip);
+    sf_assembly_set_time(assembly, queued->time);
     compare_still(renderer, &filled);
     assembly->method.play = renderer->still.plays;
     if (row->update)

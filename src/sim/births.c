@@ -45,22 +45,11 @@ static bool burst_over(const struct sf_emitter *emitter, double step_rate, uint6
 
 /* ---- emitters of effects ---- */
 
-/* Particles that the emitter's stream has made, not rounded, by the time `local` of its step. */
-static double timed_stream(const struct sf_emitter *emitter, double local)
-{
-    double end = emitter->duration > 0 ? fmin(local, (double)emitter->start + emitter->duration) : local;
-
-    if (!(end > emitter->start))
-        return 0;
-    return emitter->rate *
-           (sf_timing_integral(emitter->timing, end) - sf_timing_integral(emitter->timing, emitter->start));
-}
-
 static double timed_births(const void *user, double local)
 {
     const struct sf_emitter *emitter = user;
 
-    return floor(timed_stream(emitter, local) + 1e-6) + (emitter->start < local ? emitter->burst : 0);
+    return floor(sf_emitter_stream(emitter, local) + 1e-6) + (emitter->start < local ? emitter->burst : 0);
 }
 
 uint64_t sf_sim_births(const struct sf_scene *scene, const struct sf_emitter *emitter, uint64_t step)
@@ -140,7 +129,7 @@ static void feed_run(void *user, double begin, double end, double shift)
     struct feeding *feeding = user;
     const struct sf_emitter *emitter = &feeding->scene->emitters[feeding->emitter];
     double from = (begin + shift) * feeding->rate - (double)feeding->step, share = (end - begin) * feeding->rate;
-    double began = timed_stream(emitter, begin), ended = timed_stream(emitter, end);
+    double began = sf_emitter_stream(emitter, begin), ended = sf_emitter_stream(emitter, end);
     uint64_t before = (uint64_t)floor(began + 1e-6), after = (uint64_t)floor(ended + 1e-6);
     struct sf_sim_record pose = {.emitter = feeding->emitter};
     float unused[3];

@@ -7,10 +7,10 @@
 #include "sim/births.h"
 #include "sim/obstacle.h"
 
-_Static_assert(sizeof(struct sf_sim_record) == 64 && sizeof(struct sf_sim_emitter) == 112, "std140");
+_Static_assert(sizeof(struct sf_sim_record) == 64 && sizeof(struct sf_sim_emitter) == 128, "std140");
 _Static_assert(sizeof(struct sf_sim_turbulence) == 48 && sizeof(struct sf_sim_vortex) == 48, "std140");
 _Static_assert(offsetof(struct sf_sim_now, turbulences) == 112, "std140");
-_Static_assert(offsetof(struct sf_sim_births, records) == 112 * SF_SIM_EMITTERS, "std430");
+_Static_assert(offsetof(struct sf_sim_births, records) == 128 * SF_SIM_EMITTERS, "std430");
 _Static_assert(sizeof(struct sf_sim_now) <= 16384, "the least that every device offers for a uniform block");
 _Static_assert(SF_SIM_EMITTERS == SF_EMITTERS_MAX && SF_EMITTERS_MAX <= 256, "sf_particle.look has 8 bits");
 _Static_assert(SF_SIM_TURBULENCES >= SF_FORCES_MAX && SF_SIM_VORTICES >= SF_FORCES_MAX &&
@@ -99,6 +99,8 @@ static void feed_emitter(const struct sf_scene *scene, const struct sf_sim_layou
     to->change[2] = from->fade_in;
     to->change[3] = from->fade_out;
     to->turn[0] = from->spin;
+    to->facing[0] = (float)cos(from->rotation * PI / 180);
+    to->facing[1] = (float)sin(from->rotation * PI / 180);
     to->surface = from->surface;
     to->triangles = layout->triangles[i];
     to->triangle_count = layout->triangle_counts[i];

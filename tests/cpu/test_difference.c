@@ -78,6 +78,9 @@ static void test_single_values(void **state)
         {"all", "larsson.soft=0", GRAPH},
         {"all", "thick.ambient=1", READ},
         {"all", "thick.resolution=full", GRAPH},
+        {"effects", "effects.1.start=0.6", SIM}, /* by its list */
+        {"effects", "effects.0.position=0,0.3,0.1", SIM},
+        {"effects", "effects.0.file=../assets/effect-inner.json", SIM | ASSETS | GRAPH},
         {"latlong", "environment.rotation=91", READ},
         {"latlong", "environment.type=latlong", 0},
         {"mesh", "objects.1.rotation=0,26,0", SIM},
@@ -474,7 +477,8 @@ static void write_panorama(void)
 static void try_control(const char *path, const struct sf_scene *scene, const struct trace *trace,
                         const struct sf_control *from)
 {
-    const char *const files[] = {"../assets/pyramid.gltf", "../assets/house.obj", "../assets/tiny.csv", panorama};
+    const char *const files[] = {"../assets/pyramid.gltf", "../assets/house.obj", "../assets/tiny.csv", panorama,
+                                 "../assets/effect-inner.json"};
     struct sf_control control = *from;
 
     if (control.kind == SF_CONTROL_TEXT) {
@@ -528,6 +532,7 @@ static void test_every_row_has_the_bits_that_it_needs(void **state)
                   {"latlong", "environment", "method=thick"},
                   {"cube", "camera", "method=thick"},
                   {"sphere", "", "method=thick"},
+                  {"effects", "effects", "method=thick"},
                   {"list-csv", "", "method=thick"},
                   {"list-ply", "", "method=thick"}};
 
