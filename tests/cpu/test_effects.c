@@ -1,4 +1,4 @@
-/* Effects: their time lines against a model that unrolls every turn of every clock, what they become in a scene, and files that are wrong. */
+/* Effects: their time lines against a model that unrolls every turn of every clock, and what they become in a scene. */
 #include "scene_kit.h"
 
 #include <math.h>
@@ -436,163 +436,13 @@ static void sets_and_hashes_know_effects(void **state)
     sf_scene_destroy(&b);
 }
 
-/* ---- files that are wrong ---- */
-
-static void refuse_effect(const char *text, const char *part)
-{
-    write_text("a.json", text);
-    refuse(SCENE, part);
-}
-
-static void wrong_files_say_what_and_where(void **state)
-{
-    static const struct {
-        const char *text, *part;
-    } cases[] = {
-        {"", "a.json: the file is empty; an effect is a JSON object"},
-        {"[]", "a.json: an effect is a JSON object"},
-        {"{\"steps\":[}", "a.json:1:11: "},
-        {"{\"steps\":[],\"steps\":[]}", "duplicate"},
-        {"{}", "a.json: steps is missing"},
-        {"{\"steps\":[]}", "a.json: /steps: holds 0 elements; 1 to 64 are allowed"},
-        {"{\"stepps\":[]}", "a.json: /stepps: unknown key, did you mean steps?"},
-        {"{\"loop\":true,\"steps\":[" POINT "]}", "a.json: /loop: needs a duration"},
-        {"{\"loop\":true,\"duration\":0.01,\"steps\":[" POINT "]}", "a.json: /duration: 0.01 s is too short"},
-        {"{\"steps\":[{\"type\":\"light\"}]}", "a.json: /steps/0: light is missing"},
-        {"{\"steps\":[{\"typ\":\"light\"}]}",
-         "a.json: /steps/0: type is missing (emitter, light, flash, shake, effect)"},
-        {"{\"steps\":[{\"type\":\"flach\"}]}", "did you mean flash?"},
-        {"{\"steps\":[{\"type\":\"flash\",\"easng\":\"in\"}]}",
-         "a.json: /steps/0/easng: unknown key, did you mean easing?"},
-        {"{\"steps\":[{\"type\":\"flash\",\"angle\":1}]}",
-         "/steps/0/angle: type flash does not take this key, only shake"},
-        {"{\"steps\":[{\"type\":\"flash\",\"duration\":-1}]}", "/steps/0/duration: -1 is out of range: 0 to 100000 s"},
-        {"{\"steps\":[{\"type\":\"flash\",\"duration\":\"1\"}]}", "/steps/0/duration: must be a number, not a string"},
-        {"{\"steps\":[{\"type\":\"flash\",\"duration\":NaN}]}", "a.json:1:"},
-        {"{\"steps\":[{\"type\":\"flash\",\"start\":1e999}]}", "a.json:1:"},
-        {"{\"steps\":[{\"type\":\"flash\",\"fade_out\":1}]}",
-         "/steps/0/fade_out: the step goes on for ever; give it a duration"},
-        {"{\"steps\":[{\"type\":\"flash\",\"duration\":1,\"fade_in\":0.6,\"fade_out\":0.5}]}",
-         "are longer than the step, 1 s"},
-        {"{\"steps\":[{\"type\":\"flash\",\"duration\":2,\"every\":1}]}",
-         "/steps/0/duration: 2 s is longer than every (1 s)"},
-        {"{\"steps\":[{\"type\":\"flash\",\"every\":0.001}]}", "/steps/0/every: 0.001 s is too short"},
-        {"{\"steps\":[{\"type\":\"flash\",\"times\":3}]}", "/steps/0/times: 3 times needs every"},
-        {"{\"steps\":[{\"type\":\"emitter\",\"emitter\":{\"type\":\"cone\",\"temprature\":3}}]}",
-         "a.json: /steps/0/emitter/temprature: unknown key, did you mean temperature?"},
-        {"{\"steps\":[{\"type\":\"emitter\",\"emitter\":{\"type\":\"cone\",\"direction\":[0,0,0]}}]}",
-         "a.json: /steps/0/emitter/direction: 0,0,0 has no direction"},
-        {"{\"steps\":[{\"type\":\"emitter\",\"emitter\":{\"type\":\"list\",\"particles\":[]}}]}",
-         "a.json: /steps/0/emitter/type: list cannot be a step of an effect"},
-        {"{\"steps\":[{\"type\":\"emitter\",\"emitter\":{\"type\":\"mesh\",\"file\":\"no.obj\"}}]}",
-         "test.json: /effects/0 (a.json: /steps/0/emitter)/file: "},
-        {"{\"steps\":[{\"type\":\"light\",\"light\":{\"type\":\"spot\",\"position\":[0,0,0],\"direction\":[0,1,0],"
-         "\"inner\":40}}]}",
-         "a.json: /steps/0/light: inner (40 deg) must be less than outer"},
-        {"{\"steps\":[{\"type\":\"effect\",\"file\":\"none.json\"}]}",
-         "a.json: /steps/0/file: cannot open 'none.json'"},
-        {"{\"steps\":[{\"type\":\"effect\",\"file\":\"a.json\"}]}",
-         "a.json: /steps/0/file: 'a.json' is the effect that it is part of"},
-        {"{\"steps\":[{\"type\":\"effect\",\"file\":\"./a.json\"}]}",
-         "/steps/0/file: './a.json' is the effect that it is part of"},
-    };
-
-    (void)state;
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
-        refuse_effect(cases[i].text, cases[i].part);
-    refuse("{\"effects\":[{\"file\":\"none.json\"}]}", "test.json: /effects/0/file: cannot open 'none.json'");
-    refuse("{\"effects\":[{\"position\":[0,0,0]}]}", "test.json: /effects/0: file is missing");
-    refuse("{\"effects\":[{\"file\":\"a.json\",\"times\":2}]}", "test.json: /effects/0/times: 2 times needs every");
-}
-
-static void rings_and_depths_are_refused(void **state)
-{
-    char text[256];
-
-    (void)state;
-    write_text("b.json", "{\"steps\":[{\"type\":\"effect\",\"file\":\"a.json\"}]}");
-    refuse_effect("{\"steps\":[" POINT ",{\"type\":\"effect\",\"file\":\"b.json\"}]}",
-                  "b.json: /steps/0/file: 'a.json' is the effect that it is part of");
-    for (int i = 0; i < 5; i++) {
-        char path[16];
-
-        snprintf(path, sizeof path, "deep%d.json", i);
-        snprintf(text, sizeof text, "{\"steps\":[{\"type\":\"effect\",\"file\":\"deep%d.json\"}]}", i + 1);
-        write_text(path, text);
-    }
-    write_text("deep4.json", "{\"steps\":[" POINT "]}");
-    refuse("{\"effects\":[{\"file\":\"deep0.json\"}]}",
-           "deep3.json: /steps/0/file: 'deep4.json' is an effect within 4 others");
-    sf_scene_destroy(&(struct sf_scene *){parse("{\"effects\":[{\"file\":\"deep1.json\"}]}")});
-}
-
-static void too_many_are_counted(void **state)
-{
-    char text[4096] = "{\"lights\":[{\"type\":\"point\",\"position\":[0,0,0]}],\"effects\":[";
-
-    (void)state;
-    write_text("a.json", "{\"steps\":[" POINT "," POINT "]}");
-    for (int i = 0; i < 4; i++)
-        strcat(text, i ? ",{\"file\":\"a.json\"}" : "{\"file\":\"a.json\"}");
-    strcat(text, "]}");
-    refuse(text, "test.json: /effects: 8 lights of effects, with the scene's own 1, are more than 8; take effects out");
-    /* 64 to the fourth of them: not all are counted. */
-    for (int level = 0; level < 4; level++) {
-        static char many[8192];
-        char path[16], step[64];
-
-        snprintf(path, sizeof path, "many%d.json", level);
-        snprintf(step, sizeof step,
-                 level == 3 ? "{\"type\":\"flash\"}" : "{\"type\":\"effect\",\"file\":\"many%d.json\"}", level + 1);
-        strcpy(many, "{\"steps\":[");
-        for (int i = 0; i < 64; i++) {
-            strcat(many, i ? "," : "");
-            strcat(many, step);
-        }
-        strcat(many, "]}");
-        write_text(path, many);
-    }
-    refuse("{\"effects\":[{\"file\":\"many0.json\"}]}", "at least 100000 flashes of effects");
-}
-
-static void listings_are_in_order(void **state)
-{
-    struct caught caught = {"", 0};
-    struct sf_log log = {caught_write, &caught, SF_LOG_ERROR};
-    const char *light, *flash;
-    char *text = NULL;
-
-    (void)state;
-    write_text("a.json", "{\"steps\":[{\"type\":\"flash\",\"start\":1,\"duration\":0.5,\"every\":2,\"times\":3}," POINT
-                         "," EMITTER "]}");
-    assert_int_equal(sf_effect_print("a.json", &log, &text), SF_OK);
-    assert_non_null(strstr(text, "a.json: ok: 1 emitter, 1 light, 1 flash, 0 shakes\n"));
-    assert_non_null(light = strstr(text, "0.000 s  for ever       light: point, intensity 3\n"));
-    assert_non_null(flash = strstr(text, "1.000 s  for 0.5 s      flash: strength 1; every 2 s, 3 times\n"));
-    assert_true(light < flash);
-    free(text);
-    assert_int_equal(sf_effect_print("none.json", &log, &text), SF_ERROR_IO);
-    assert_caught(&caught, "cannot open 'none.json'");
-    write_text("a.json", "{\"steps\":[{\"type\":\"flash\",\"strngth\":1}]}");
-    assert_int_equal(sf_effect_print("a.json", &log, &text), SF_ERROR_SCENE);
-    assert_caught(&caught, "a.json: /steps/0/strngth: unknown key, did you mean strength?");
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(easings_and_their_integrals),
-        cmocka_unit_test(clocks_agree_with_the_unrolled_model),
-        cmocka_unit_test(births_agree_with_the_unrolled_model),
-        cmocka_unit_test(a_path_begins_again_with_its_step),
-        cmocka_unit_test(nested_effects_are_placed_and_timed),
-        cmocka_unit_test(lights_flashes_and_shakes_come_and_go),
-        cmocka_unit_test(shakes_are_what_the_document_says),
-        cmocka_unit_test(sets_and_hashes_know_effects),
-        cmocka_unit_test(wrong_files_say_what_and_where),
-        cmocka_unit_test(rings_and_depths_are_refused),
-        cmocka_unit_test(too_many_are_counted),
-        cmocka_unit_test(listings_are_in_order),
+        cmocka_unit_test(easings_and_their_integrals),          cmocka_unit_test(clocks_agree_with_the_unrolled_model),
+        cmocka_unit_test(births_agree_with_the_unrolled_model), cmocka_unit_test(a_path_begins_again_with_its_step),
+        cmocka_unit_test(nested_effects_are_placed_and_timed),  cmocka_unit_test(lights_flashes_and_shakes_come_and_go),
+        cmocka_unit_test(shakes_are_what_the_document_says),    cmocka_unit_test(sets_and_hashes_know_effects),
     };
     return cmocka_run_group_tests(tests, scratch_enter, scratch_leave);
 }
