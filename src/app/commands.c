@@ -22,8 +22,7 @@ static const char *const graph_formats[] = {"text", "dot", "json", NULL};
 static const char *const texture_kinds[] = {"fbm", "turbulence", "cellular", "dispersed", NULL};
 static const char *const texture_channels[] = {"all", "color", "alpha", "normal", "height", NULL};
 static const char *const texture_bits[] = {"8", "16", NULL};
-static const char *const params_formats[] = {"text",          "json-schema",     "markdown", "effect-text",
-                                             "effect-schema", "effect-markdown", NULL};
+static const char *const params_formats[] = {"text", "json-schema", "markdown", NULL};
 
 static const struct sf_option common_options[] = {
     {"verbose", 'v', SF_OPTION_COUNT, FIELD(verbose), .doc = "say more; twice: say everything"},
@@ -198,9 +197,11 @@ static const struct sf_option graph_options[] = {{"format", 0, SF_OPTION_WORD, F
                                                   .initial = "text", .doc = "of the output", .words = graph_formats},
                                                  {.name = NULL}};
 
-static const struct sf_option params_options[] = {{"format", 0, SF_OPTION_WORD, FIELD(format), .value = "FORMAT",
-                                                   .initial = "text", .doc = "of the output", .words = params_formats},
-                                                  {.name = NULL}};
+static const struct sf_option params_options[] = {
+    {"format", 0, SF_OPTION_WORD, FIELD(format), .value = "FORMAT", .initial = "text", .doc = "of the output",
+     .words = params_formats},
+    {"effects", 0, SF_OPTION_FLAG, FIELD(effects), .doc = "the keys of effect files, not of scenes"},
+    {.name = NULL}};
 
 static const struct sf_option *const capture_tables[] = {capture_options, size_options,   scene_options,
                                                          device_options,  common_options, NULL};

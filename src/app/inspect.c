@@ -90,9 +90,11 @@ enum sf_status sf_graph_run(const struct sf_arguments *arguments)
 
 enum sf_status sf_params_run(const struct sf_arguments *arguments)
 {
-    char *text = NULL;
-    enum sf_status status = sf_params_print(arguments->format, sf_console_log(), &text);
+    char format[64], *text = NULL;
+    enum sf_status status;
 
+    snprintf(format, sizeof format, "%s%s", arguments->effects ? "effect-" : "", arguments->format);
+    status = sf_params_print(format, sf_console_log(), &text);
     if (!status)
         print_text(text);
     return status;

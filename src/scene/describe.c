@@ -59,12 +59,12 @@ static const struct sf_param_document effect_document = {
         (const char *const[]){
             "# Keys of effect files",
             "",
-            "Generated from the table of parameters by `sfumato params --format effect-markdown`; a test compares.",
+            "Generated from the table of parameters by `sfumato params --effects --format markdown`; a test compares.",
             "[effects.md](effects.md) says what they mean together.",
             NULL,
         },
     .title = "sfumato effect",
-    .made_by = "sfumato params --format effect-schema",
+    .made_by = "sfumato params --effects --format json-schema",
     .elsewhere =
         {
             {&sf_scene_emitter_group, "As [an element of a scene's `emitters`](params.md#emitters); `start`, "
@@ -85,7 +85,7 @@ enum sf_status sf_params_print(const char *format, const struct sf_log *log, cha
         {"json-schema", sf_param_document_schema, &scene_document},
         {"markdown", sf_param_document_markdown, &scene_document},
         {"effect-text", sf_param_document_text, &effect_document},
-        {"effect-schema", sf_param_document_schema, &effect_document},
+        {"effect-json-schema", sf_param_document_schema, &effect_document},
         {"effect-markdown", sf_param_document_markdown, &effect_document},
     };
     struct sf_text out = {0}, names = {0};

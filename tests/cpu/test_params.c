@@ -419,7 +419,7 @@ static void test_documents_are_fresh(void **state)
     compare_document("markdown", "docs/params.md");
     compare_document("json-schema", "docs/scene.schema.json");
     compare_document("effect-markdown", "docs/effect-params.md");
-    compare_document("effect-schema", "docs/effect.schema.json");
+    compare_document("effect-json-schema", "docs/effect.schema.json");
 }
 
 static const char *listed_text;

@@ -122,7 +122,7 @@ void sf_scene_view(const struct sf_scene *scene, double time, struct sf_camera_v
 
 /* ---- the parameter table ---- */
 
-/* As a document: "text", "json-schema" or "markdown"; of effect files "effect-text", "effect-schema" or
+/* As a document: "text", "json-schema" or "markdown"; of effect files "effect-text", "effect-json-schema" or
  * "effect-markdown". */
 enum sf_status sf_params_print(const char *format, const struct sf_log *log, char **text);
 
