@@ -72,6 +72,11 @@ struct sf_gpu_object {
     SF_VEC4(bounce);  /* x restitution, y friction, z, w unused */
 };
 
+/* What flashes add to the picture. */
+struct sf_flash_push {
+    SF_VEC4(light); /* rgb, W/(m2 sr); w: unused */
+};
+
 /* Where a light sees the smoke from: fitted on the GPU to the particles' bounds each frame (thick/fit.comp). A point p
  * of the world has q = (view * p).xyz (x right, y up, z away from the light), uv = (perspective ? q.xy / q.z : q.xy) *
  * window.xy + window.zw in 0..1 of its cell (v down), and depth d = perspective ? length(q) : q.z. A light that stands in

@@ -5,8 +5,8 @@
 #include "frame.h"
 #include "particle.h"
 
-#define SF_SIM_EMITTERS    16
-#define SF_SIM_RECORDS     48 /* an emitter makes at most a burst and a stream, or a list, in a step */
+#define SF_SIM_EMITTERS    128
+#define SF_SIM_RECORDS     384 /* at most three of an emitter in a step */
 #define SF_SIM_TURBULENCES 16
 #define SF_SIM_VORTICES    16
 #define SF_SIM_TOUCHES     40 /* looks at the objects' distances, at most, for one particle in one step */
@@ -55,6 +55,7 @@ struct sf_sim_emitter {
     SF_VEC4(change); /* growth, m/s; 3 dilution; fade in; fade out (shares of life) */
     SF_VEC4(turn);   /* spin, rad/s; over a whole step: exp(-cooling dt), and what buoyancy's K s and K s^2 come to (see
                         motion.glsl) */
+    SF_VEC4(facing); /* xy: cosine and sine of its turn about +y */
     SF_UINT(kind);
     SF_UINT(surface);
     SF_UINT(triangles); /* mesh: first element in the buffer of triangles, and how many */
@@ -98,11 +99,15 @@ struct sf_sim_now {
     SF_VEC4(wind);         /* xyz: m/s */
     SF_VEC4(
         motion); /* over a whole step: exp(-drag dt), and what velocities and accelerations come to (see motion.glsl) */
-    SF_STRUCT(sf_sim_record) records[SF_SIM_RECORDS];
-    SF_STRUCT(sf_sim_emitter) emitters[SF_SIM_EMITTERS];
     SF_STRUCT(sf_sim_turbulence) turbulences[SF_SIM_TURBULENCES];
     SF_STRUCT(sf_sim_vortex) vortices[SF_SIM_VORTICES];
     SF_STRUCT(sf_gpu_object) objects[SF_FRAME_OBJECTS];
+};
+
+/* Emitters, and what they make in this step: too much for a uniform block. Only the records that are there are written. */
+struct sf_sim_births {
+    SF_STRUCT(sf_sim_emitter) emitters[SF_SIM_EMITTERS];
+    SF_STRUCT(sf_sim_record) records[SF_SIM_RECORDS];
 };
 
 /* The list is cut into as many chunks as there are workgroups, and a chunk into one run of neighbours for each lane: so

@@ -10,6 +10,7 @@ layout(set = 0, binding = 1, std430) writeonly buffer After { uvec4 after[]; };
 layout(set = 0, binding = 2, std430) buffer Counts { sf_particle_counts counts; };
 layout(set = 0, binding = 3, std430) readonly buffer Triangles { sf_sim_triangle triangles[]; };
 layout(set = 0, binding = 4, std430) readonly buffer Listed { uvec4 listed[]; };
+layout(set = 0, binding = 5, std430) readonly buffer Births { sf_sim_births births; };
 
 const float TAU = 6.28318531;
 
@@ -92,6 +93,11 @@ vec3 point_on_mesh(uint first, uint count, uint pick, vec2 r, out vec3 normal)
     return vec3(triangle.x, triangle.y, triangle.z) + edge1 * r.x + edge2 * r.y;
 }
 
+vec3 turned(vec3 v, vec2 facing)
+{
+    return vec3(facing.x * v.x + facing.y * v.z, v.y, facing.x * v.z - facing.y * v.x);
+}
+
 // Where it is born, relative to the emitter, and which way is outward there.
 vec3 birth_place(sf_sim_emitter emitter, uint id, out vec3 outward)
 {
@@ -114,10 +120,12 @@ vec3 birth_place(sf_sim_emitter emitter, uint id, out vec3 outward)
             place = reach * (2.0 * r - 1.0);
             normal = dot(place, place) > 0.0 ? normalize(place) : vec3(0.0, 1.0, 0.0);
         }
-        outward = normal;
+        place = turned(place, emitter.facing.xy);
+        outward = turned(normal, emitter.facing.xy);
     } else {
         place = point_on_mesh(emitter.triangles, emitter.triangle_count, sf_random_u32(now.seed, id, SF_RANDOM_FACE), r.xy, normal) * reach.x;
-        outward = normal;
+        place = turned(place, emitter.facing.xy);
+        outward = turned(normal, emitter.facing.xy);
     }
     return place;
 }
@@ -150,10 +158,10 @@ void main()
     if (birth < now.births && at < counts.capacity) {
         uint which = 0u;
 
-        while (which + 1u < now.record_count && now.records[which + 1u].first <= birth)
+        while (which + 1u < now.record_count && births.records[which + 1u].first <= birth)
             which++;
-        sf_sim_record record = now.records[which];
-        sf_sim_emitter emitter = now.emitters[record.emitter];
+        sf_sim_record record = births.records[which];
+        sf_sim_emitter emitter = births.emitters[record.emitter];
         uint number = birth - record.first, id = now.first_id + birth;
         float moment = clamp(record.begin.w + float(number) * record.end.w, 0.0, 1.0);
         float rest = (1.0 - moment) * now.dt;

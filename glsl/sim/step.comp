@@ -12,6 +12,7 @@ layout(set = 0, binding = 1, std430) readonly buffer Before { uvec4 before[]; };
 layout(set = 0, binding = 2, std430) writeonly buffer After { uvec4 after[]; };
 layout(set = 0, binding = 3, std430) buffer Counts { sf_particle_counts counts; };
 layout(set = 0, binding = 4, std430) readonly buffer Scratch { uint scratch[]; };
+layout(set = 0, binding = 5, std430) readonly buffer Births { sf_sim_births births; };
 
 shared uint chunks_before, chunks_all;
 
@@ -60,7 +61,7 @@ void main()
 
     float dt = now.dt;
     vec3 free = now.motion.xyz;
-    vec4 turn = now.emitters[0].turn, change = now.emitters[0].change;
+    vec4 turn = births.emitters[0].turn, change = births.emitters[0].change;
 
     fetch_world();
     lane_range(live, i, end);
@@ -74,8 +75,8 @@ void main()
                     if (EMITTERS > 1u) {
                         uint emitter = (p.look >> SF_LOOK_EMITTER_SHIFT) & 0xffu;
 
-                        turn = now.emitters[emitter].turn;
-                        change = now.emitters[emitter].change;
+                        turn = births.emitters[emitter].turn;
+                        change = births.emitters[emitter].change;
                     }
                     advance(p, dt, sf_motion(free, turn.yzw), change, turn.x);
                 }

@@ -205,9 +205,11 @@ static const struct sf_option graph_options[] = {{"format", 0, SF_OPTION_WORD, F
                                                   .initial = "text", .doc = "of the output", .words = graph_formats},
                                                  {.name = NULL}};
 
-static const struct sf_option params_options[] = {{"format", 0, SF_OPTION_WORD, FIELD(format), .value = "FORMAT",
-                                                   .initial = "text", .doc = "of the output", .words = params_formats},
-                                                  {.name = NULL}};
+static const struct sf_option params_options[] = {
+    {"format", 0, SF_OPTION_WORD, FIELD(format), .value = "FORMAT", .initial = "text", .doc = "of the output",
+     .words = params_formats},
+    {"effects", 0, SF_OPTION_FLAG, FIELD(effects), .doc = "the keys of effect files, not of scenes"},
+    {.name = NULL}};
 
 static const struct sf_option *const capture_tables[] = {capture_options, size_options,   scene_options,
                                                          device_options,  common_options, NULL};
@@ -223,6 +225,8 @@ static const struct sf_option *const graph_tables[] = {graph_options, size_optio
 static const struct sf_option *const params_tables[] = {params_options, common_options, NULL};
 static const struct sf_option *const check_tables[] = {scene_options, common_options, NULL};
 
+static const struct sf_option *const effect_tables[] = {common_options, NULL};
+
 static const char *const capture_notes[] = {
     "Without -o the files are named after the scene, in the current folder. Ctrl-C finishes the frame in hand.",
     "  sfumato capture scenes/plume.json -o out/plume.####.exr -o out/plume.####.png --frames 0-95", NULL};
@@ -235,6 +239,8 @@ static const char *const texture_notes[] = {
     "  sfumato texture out/puffs.exr out/puffs.png --tiles 4x4 -s 128x128 --loop 16", NULL};
 static const char *const graph_notes[] = {"  sfumato graph scenes/plume.json --format dot | dot -Tsvg > graph.svg",
                                           NULL};
+
+static const char *const effect_notes[] = {"  sfumato effect scenes/effects/*.json", NULL};
 
 static const char *const view_notes[] = {
     "Without SCENE: scenes/plume.json, or the last one. ? lists the keys, Tab hides the panels.", NULL};
@@ -265,4 +271,6 @@ const struct sf_command sf_commands[] = {
      sf_params_run},
     {"check", "SCENE...", "Checks scene files and says what is wrong with them.", NULL, check_tables, 1, SIZE_MAX,
      sf_check_run},
+    {"effect", "EFFECT...", "Checks effect files and lists what they do, and when.", effect_notes, effect_tables, 1,
+     SIZE_MAX, sf_effect_run},
     {.name = NULL}};

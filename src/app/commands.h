@@ -11,6 +11,7 @@ extern const struct sf_command sf_commands[];
 enum sf_status sf_devices_run(const struct sf_arguments *arguments);
 enum sf_status sf_graph_run(const struct sf_arguments *arguments);
 enum sf_status sf_params_run(const struct sf_arguments *arguments);
+enum sf_status sf_effect_run(const struct sf_arguments *arguments);
 enum sf_status sf_check_run(const struct sf_arguments *arguments);
 
 #endif

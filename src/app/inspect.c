@@ -1,4 +1,4 @@
-/* The subcommands that only look: devices, graph, params, check. */
+/* The subcommands that only look: devices, graph, params, check, effect. */
 #include "commands.h"
 
 #include <jansson.h>
@@ -90,9 +90,11 @@ enum sf_status sf_graph_run(const struct sf_arguments *arguments)
 
 enum sf_status sf_params_run(const struct sf_arguments *arguments)
 {
-    char *text = NULL;
-    enum sf_status status = sf_params_print(arguments->format, sf_console_log(), &text);
+    char format[64], *text = NULL;
+    enum sf_status status;
 
+    snprintf(format, sizeof format, "%s%s", arguments->effects ? "effect-" : "", arguments->format);
+    status = sf_params_print(format, sf_console_log(), &text);
     if (!status)
         print_text(text);
     return status;
@@ -122,11 +124,29 @@ enum sf_status sf_check_run(const struct sf_arguments *arguments)
             print_count(info.objects, "object");
             print_count(info.emitters, "emitter");
             print_count(info.forces, "force");
+            if (info.effects)
+                print_count(info.effects, "effect");
             putchar('\n');
         }
         if (!first)
             first = status;
         sf_scene_destroy(&scene);
+    }
+    return first ? first : sf_interrupted() ? SF_ERROR_INTERRUPTED : SF_OK;
+}
+
+enum sf_status sf_effect_run(const struct sf_arguments *arguments)
+{
+    enum sf_status first = SF_OK;
+
+    for (size_t i = 0; i < arguments->files.count && !sf_interrupted(); i++) {
+        char *text = NULL;
+        enum sf_status status = sf_effect_print(arguments->files.items[i], sf_console_log(), &text);
+
+        if (!status)
+            print_text(text);
+        if (!first)
+            first = status;
     }
     return first ? first : sf_interrupted() ? SF_ERROR_INTERRUPTED : SF_OK;
 }

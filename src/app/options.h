@@ -71,7 +71,7 @@ struct sf_arguments {
     struct sf_argument_real lacunarity, roughness, scale, ragged, softness, density, mottle;
     bool tileable;
     /* devices, graph, params */
-    bool json;
+    bool json, effects;
     const char *format;
 };
 

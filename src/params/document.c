@@ -95,9 +95,9 @@ static void text_group(const char *prefix, const struct sf_param_group *group, s
     }
 }
 
-void sf_param_document_text(const struct sf_param_group *root, struct sf_text *text)
+void sf_param_document_text(const struct sf_param_document *document, struct sf_text *text)
 {
-    text_group("", root, text);
+    text_group("", document->root, text);
 }
 
 /* ---- markdown ---- */
@@ -118,11 +118,25 @@ static void markdown_row(const struct sf_param *row, bool typed, unsigned inheri
     sf_text_printf(text, " | %s | %s |\n", sf_param_renews(bits), row->doc);
 }
 
-static void markdown_group(const char *path, const struct sf_param_group *group, unsigned inherited,
-                           struct sf_text *text)
+/* What stands in the place of the group's table, or NULL. */
+static const char *elsewhere(const struct sf_param_document *document, const struct sf_param_group *group)
 {
-    bool typed = sf_param_kind(group) != NULL;
+    for (size_t i = 0; i < SF_COUNT(document->elsewhere) && document->elsewhere[i].group; i++)
+        if (document->elsewhere[i].group == group)
+            return document->elsewhere[i].text;
+    return NULL;
+}
 
+static void markdown_group(const struct sf_param_document *document, const char *path,
+                           const struct sf_param_group *group, unsigned inherited, struct sf_text *text)
+{
+    bool typed = sf_param_kind(group) != NULL, outermost = group == document->root;
+    const char *other = elsewhere(document, group);
+
+    if (other) {
+        sf_text_printf(text, "\n## %s\n\n%s\n", path, other);
+        return;
+    }
     sf_text_printf(text, "\n## %s\n\n%s\n\n", path, group->doc);
     sf_text_printf(text, "| key | value | default | allowed%s | renews | meaning |\n|---|---|---|---%s|---|---|\n",
                    typed ? " | types" : "", typed ? "|---" : "");
@@ -134,31 +148,19 @@ static void markdown_group(const char *path, const struct sf_param_group *group,
 
         if (!row->group)
             continue;
-        sf_text_printf(&deeper, "%s%s%s%s", strcmp(path, "scene") == 0 ? "" : path,
-                       strcmp(path, "scene") == 0 ? "" : ".", row->key, row->type == SF_PARAM_LIST ? "[]" : "");
+        sf_text_printf(&deeper, "%s%s%s%s", outermost ? "" : path, outermost ? "" : ".", row->key,
+                       row->type == SF_PARAM_LIST ? "[]" : "");
         if (deeper.failed)
             text->failed = true;
         else
-            markdown_group(deeper.data, row->group, inherited | row->rebuild, text);
+            markdown_group(document, deeper.data, row->group, inherited | row->rebuild, text);
         sf_text_finish(&deeper);
     }
 }
 
-void sf_param_document_markdown(const struct sf_param_group *root, struct sf_text *text)
+void sf_param_document_markdown(const struct sf_param_document *document, struct sf_text *text)
 {
-    static const char *const intro[] = {
-        "# Parameters",
-        "",
-        "Generated from the table of parameters by `sfumato params --format markdown`; a test compares.",
-        "",
-        "Every key of a scene file, by object. [scene.md](scene.md) says what they mean together. The same names",
-        "serve `--set`, with dots: `--set thick.steps=24`, `--set lights.0.intensity=3`,",
-        "`--set medium.albedo=0.9,0.9,0.8`. `types` are the values of the object's `type` that take the key. `renews`",
-        "is the most that a change while running makes anew: the simulation from its beginning, the frame's graph, or",
-        "what was read from files; nothing where empty.",
-    };
-
-    for (size_t i = 0; i < SF_COUNT(intro); i++)
-        sf_text_printf(text, "%s\n", intro[i]);
-    markdown_group("scene", root, 0, text);
+    for (size_t i = 0; document->intro[i]; i++)
+        sf_text_printf(text, "%s\n", document->intro[i]);
+    markdown_group(document, document->root->name, document->root, 0, text);
 }

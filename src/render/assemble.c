@@ -7,6 +7,7 @@
 _Static_assert(sizeof(struct sf_particle) == 64, "std430");
 _Static_assert(sizeof(struct sf_particle_counts) == 96, "std430");
 _Static_assert(sizeof(struct sf_gpu_light_view) == 96, "std140");
+_Static_assert(sizeof(struct sf_flash_push) == 16, "push constants");
 
 /* Resources that only this file needs. */
 struct parts {
@@ -241,6 +242,34 @@ static void declare_scene(struct sf_assembly *assembly, bool shown)
         declare_mesh(&parts, i);
 }
 
+/* Light over the whole picture, behind all that the method draws. */
+static void declare_flash(struct sf_assembly *assembly)
+{
+    const struct sf_use use = {.resource = assembly->method.color, .access = SF_ACCESS_COLOR, .load = SF_LOAD_KEEP};
+
+    if (assembly->drawn.scene->flash_count == 0)
+        return;
+    sf_graph_pass(assembly->graph, &(struct sf_pass_desc){.name = "scene.flash",
+                                                          .kind = SF_PASS_RASTER,
+                                                          .shader = "scene/screen.vert",
+                                                          .fragment = "scene/flash.frag",
+                                                          .uses = &use,
+                                                          .use_count = 1,
+                                                          .push = &assembly->flash,
+                                                          .push_bytes = sizeof assembly->flash,
+                                                          .draw_live = assembly->flash_draw,
+                                                          .raster = {.blend = {SF_BLEND_ADD}}});
+}
+
+void sf_assembly_set_time(struct sf_assembly *assembly, double time)
+{
+    float *light = assembly->flash.light;
+
+    sf_scene_flash(assembly->drawn.scene, time, light);
+    assembly->flash_draw[0] = light[0] > 0 || light[1] > 0 || light[2] > 0 ? 3 : 0;
+    assembly->flash_draw[1] = 1;
+}
+
 static sf_resource declare_readback(struct sf_assembly *assembly, const char *name, const char *pass, sf_resource from,
                                     uint64_t bytes)
 {
@@ -313,6 +342,8 @@ static enum sf_status declare(struct sf_assembly *assembly, const struct sf_asse
     declare_scene(assembly, options->shown);
     if (row->view)
         status = row->view(&assembly->method, assembly->state, log);
+    if (!status)
+        declare_flash(assembly);
     if (!status)
         declare_outputs(assembly, options);
     if (!status && options->inspect)

@@ -11,6 +11,8 @@ struct sf_assembly {
     bool float_color;
     struct sf_drawn drawn;
     struct sf_mesh_push mesh_push[SF_OBJECTS_MAX];
+    struct sf_flash_push flash;
+    uint32_t flash_draw[2]; /* vertices, instances: 0 while nothing flashes */
     struct sf_graph *graph;
     struct sf_plan *plan;
     struct sf_method_frame method;
@@ -41,6 +43,8 @@ enum sf_status sf_assembly_create(const struct sf_scene *scene, const struct sf_
                                   const struct sf_gpu_tuning *tuning, const struct sf_plan_memory *memory,
                                   const struct sf_log *log, struct sf_assembly **assembly);
 void sf_assembly_destroy(struct sf_assembly **assembly);
+/* Sets what the frame at the time flashes. */
+void sf_assembly_set_time(struct sf_assembly *assembly, double time);
 /* Points it at another scene, for which its graph serves as it is (sf_drawn_alike). */
 void sf_assembly_set_scene(struct sf_assembly *assembly, const struct sf_drawn *drawn);
 

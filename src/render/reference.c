@@ -108,9 +108,9 @@ static void *copy_bytes(struct sf_arena *arena, const void *from, size_t bytes)
     return to;
 }
 
-/* Lamps, objects, medium, ramp and environment; nothing of emitters, forces and cameras, which the particles and the pose
- * stand for. False when memory is out. */
-static bool copy_scene(const struct sf_scene *from, struct sf_reference *reference)
+/* Lamps as they are at the time, objects, medium, ramp and environment; nothing of emitters, forces, effects and cameras,
+ * which the particles and the pose stand for. False when memory is out. */
+static bool copy_scene(const struct sf_scene *from, double time, struct sf_reference *reference)
 {
     struct sf_scene *scene = &reference->scene;
     struct sf_environment *environment = &scene->environment;
@@ -122,6 +122,8 @@ static bool copy_scene(const struct sf_scene *from, struct sf_reference *referen
     scene->camera = (struct sf_camera){0};
     memset(scene->emitters, 0, sizeof scene->emitters);
     scene->emitter_count = scene->force_count = 0;
+    scene->effect_count = scene->flash_count = scene->shake_count = 0;
+    sf_scene_lights(from, time, scene->lights);
     for (uint32_t i = 0; i < scene->mesh_count; i++) {
         struct sf_mesh *mesh = &scene->meshes[i];
 
@@ -176,7 +178,7 @@ enum sf_status sf_reference_create(const struct sf_scene *scene, const struct sf
         return sf_fail(log, SF_ERROR_USAGE,
                        "reference: the frame has no particles; its renderer needs sf_renderer_options.particles");
     reference = calloc(1, sizeof *reference);
-    if (!reference || !copy_scene(scene, reference)) {
+    if (!reference || !copy_scene(scene, frame->time, reference)) {
         sf_reference_destroy(&reference);
         return sf_fail(log, SF_ERROR_MEMORY, "no memory for the reference");
     }

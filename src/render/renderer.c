@@ -175,6 +175,7 @@ static enum sf_status record_side(struct sf_renderer *renderer, struct sf_side *
     memcpy(frame, filled, sizeof *filled); /* once: upload memory is slow to read, and writes may be combined */
     memcpy(objects, assembly->drawn.objects, sizeof assembly->drawn.objects);
     assembly->method.play = side->still.plays;
+    sf_assembly_set_time(assembly, renderer->coming.time);
     memcpy(assembly->method.probe_at, renderer->probe, sizeof renderer->probe);
     if (side->assets.row->update)
         side->assets.row->update(&assembly->method, assembly->state);

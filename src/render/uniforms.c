@@ -183,6 +183,7 @@ static void fill_environment(const struct sf_environment *from, struct sf_gpu_fr
 void sf_uniforms_fill(const struct sf_scene *scene, uint32_t width, uint32_t height, uint32_t frame_number, double time,
                       struct sf_gpu_frame *frame)
 {
+    struct sf_light lights[SF_LIGHTS_MAX];
     struct sf_camera_pose pose;
 
     memset(frame, 0, sizeof *frame);
@@ -199,8 +200,9 @@ void sf_uniforms_fill(const struct sf_scene *scene, uint32_t width, uint32_t hei
     frame->object_count = scene->object_count;
     frame->frame_number = frame_number;
     frame->seed = (uint32_t)scene->sim.seed;
+    sf_scene_lights(scene, time, lights);
     for (uint32_t i = 0; i < scene->light_count; i++)
-        fill_light(&scene->lights[i], &frame->lights[i]);
+        fill_light(&lights[i], &frame->lights[i]);
 }
 
 void sf_uniforms_view(const struct sf_camera_pose *pose, uint32_t width, uint32_t height, struct sf_gpu_frame *frame)

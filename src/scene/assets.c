@@ -9,17 +9,9 @@
 #include "scene/mesh.h"
 #include "scene/particle_file.h"
 
-/* Readers of files name the file; we say where in the scene it is named. So their error is caught, and told once, with
- * both. */
-struct listener {
-    struct sf_log log;
-    const struct sf_param_reader *reader;
-    char error[1024];
-};
-
 static void listen(void *user, enum sf_log_level level, const char *message)
 {
-    struct listener *listener = user;
+    struct sf_listener *listener = user;
 
     if (level == SF_LOG_ERROR)
         sf_param_clean(message, listener->error, sizeof listener->error);
@@ -27,14 +19,12 @@ static void listen(void *user, enum sf_log_level level, const char *message)
         sf_log(listener->reader->log, level, "%s", message);
 }
 
-static struct listener listener_for(const struct sf_param_reader *reader)
+void sf_listener_init(struct sf_listener *listener, const struct sf_param_reader *reader)
 {
-    struct listener listener = {{listen, NULL, reader->log ? reader->log->level : SF_LOG_ERROR}, reader, ""};
-
-    return listener;
+    *listener = (struct sf_listener){{listen, listener, reader->log ? reader->log->level : SF_LOG_ERROR}, reader, ""};
 }
 
-static enum sf_status retell(const struct listener *listener, enum sf_status status)
+enum sf_status sf_listener_retell(const struct sf_listener *listener, enum sf_status status)
 {
     const struct sf_param_reader *reader = listener->reader;
 
@@ -59,7 +49,7 @@ static enum sf_status out_of_memory(const struct sf_param_reader *reader)
 static enum sf_status find_mesh(struct sf_scene *scene, const struct sf_param_reader *reader, const char *file,
                                 uint32_t *index)
 {
-    struct listener listener = listener_for(reader);
+    struct sf_listener listener;
     struct sf_mesh *mesh = &scene->meshes[scene->mesh_count];
     enum sf_status status;
     uint64_t hash = 0;
@@ -75,8 +65,8 @@ static enum sf_status find_mesh(struct sf_scene *scene, const struct sf_param_re
         return sf_param_reader_fail(reader, "more than %d different mesh files", SF_MESHES_MAX);
     if (!(path = sf_path_beside(scene->path, file)))
         return out_of_memory(reader);
-    listener.log.user = &listener;
-    status = retell(&listener, sf_mesh_read(path, &scene->arena, &listener.log, mesh, &hash));
+    sf_listener_init(&listener, reader);
+    status = sf_listener_retell(&listener, sf_mesh_read(path, &scene->arena, &listener.log, mesh, &hash));
     free(path);
     if (status != SF_OK)
         return status;
@@ -89,16 +79,16 @@ static enum sf_status find_mesh(struct sf_scene *scene, const struct sf_param_re
 static enum sf_status load_list(struct sf_scene *scene, const struct sf_param_reader *reader,
                                 struct sf_emitter *emitter)
 {
-    struct listener listener = listener_for(reader);
+    struct sf_listener listener;
     char *path = sf_path_beside(scene->path, emitter->file);
     enum sf_status status;
     uint64_t hash = 0;
 
     if (!path)
         return out_of_memory(reader);
-    listener.log.user = &listener;
-    status = retell(&listener, sf_particle_file_read(path, &scene->arena, &listener.log, &emitter->list,
-                                                     &emitter->list_count, &hash));
+    sf_listener_init(&listener, reader);
+    status = sf_listener_retell(&listener, sf_particle_file_read(path, &scene->arena, &listener.log, &emitter->list,
+                                                                 &emitter->list_count, &hash));
     free(path);
     if (status == SF_OK)
         stir(scene, hash);
@@ -108,7 +98,7 @@ static enum sf_status load_list(struct sf_scene *scene, const struct sf_param_re
 static enum sf_status load_environment(struct sf_scene *scene, struct sf_param_reader *reader)
 {
     struct sf_environment *environment = &scene->environment;
-    struct listener listener = listener_for(reader);
+    struct sf_listener listener;
     bool cube = environment->kind == SF_ENVIRONMENT_CUBE;
     uint32_t count = cube ? 6 : environment->kind == SF_ENVIRONMENT_LATLONG ? 1 : 0, bad = 0;
     char *paths[6] = {NULL};
@@ -118,13 +108,13 @@ static enum sf_status load_environment(struct sf_scene *scene, struct sf_param_r
         if (!(paths[i] = sf_path_beside(scene->path, cube ? environment->files[i] : environment->file)))
             status = out_of_memory(reader);
     if (count && status == SF_OK) {
-        listener.log.user = &listener;
+        sf_listener_init(&listener, reader);
         status = sf_environment_load(environment, paths, &scene->arena, &listener.log, &bad);
         if (cube)
             sf_param_reader_at(reader, "/environment/files/%u", (unsigned)bad);
         else
             sf_param_reader_at(reader, "/environment/file");
-        status = retell(&listener, status);
+        status = sf_listener_retell(&listener, status);
     }
     for (uint32_t i = 0; i < count; i++)
         free(paths[i]);
@@ -140,7 +130,7 @@ static enum sf_status load_environment(struct sf_scene *scene, struct sf_param_r
 static enum sf_status load_atlas(struct sf_scene *scene, struct sf_param_reader *reader)
 {
     struct sf_atlas *atlas = &scene->atlas;
-    struct listener listener = listener_for(reader);
+    struct sf_listener listener;
     struct sf_texture_info info;
     enum sf_status status;
     char *path;
@@ -149,10 +139,10 @@ static enum sf_status load_atlas(struct sf_scene *scene, struct sf_param_reader 
         return SF_OK;
     if (!(path = sf_path_beside(scene->path, atlas->file)))
         return out_of_memory(reader);
-    listener.log.user = &listener;
+    sf_listener_init(&listener, reader);
     sf_param_reader_at(reader, "/atlas/file");
-    status = retell(&listener, sf_texture_load(path, (uint32_t)atlas->across, (uint32_t)atlas->down, SF_TEXTURE_ALPHA,
-                                               &listener.log, &atlas->texture));
+    status = sf_listener_retell(&listener, sf_texture_load(path, (uint32_t)atlas->across, (uint32_t)atlas->down,
+                                                           SF_TEXTURE_ALPHA, &listener.log, &atlas->texture));
     free(path);
     if (status != SF_OK)
         return status;
@@ -188,8 +178,9 @@ enum sf_status sf_scene_load_assets(struct sf_scene *scene, struct sf_param_read
     }
     for (uint32_t i = 0; i < scene->emitter_count && status == SF_OK; i++) {
         struct sf_emitter *emitter = &scene->emitters[i];
+        char place[SF_PLACE_BYTES];
 
-        sf_param_reader_at(reader, "/emitters/%u/file", (unsigned)i);
+        sf_param_reader_at(reader, "%s/file", sf_emitter_place(scene, i, place));
         if (emitter->kind == SF_EMITTER_MESH)
             status = find_mesh(scene, reader, emitter->file, &emitter->mesh);
         else if (emitter->file)

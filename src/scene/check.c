@@ -1,7 +1,10 @@
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 #include "scene/load.h"
 #include "scene/vector.h"
+
+enum { AT_BYTES = 32, LOOKS = 16 };
 
 /* ---- camera ---- */
 
@@ -71,24 +74,32 @@ static enum sf_status need_direction(struct sf_param_reader *reader, float v[3])
     return sf_normalize(v) ? SF_OK : sf_param_reader_fail(reader, "0,0,0 has no direction; 0,1,0 is straight up");
 }
 
+enum sf_status sf_scene_check_light(struct sf_light *light, struct sf_param_reader *reader, const char *at)
+{
+    enum sf_status status;
+
+    if (light->kind == SF_LIGHT_POINT)
+        return SF_OK;
+    sf_param_reader_at(reader, "%s/direction", at);
+    if ((status = need_direction(reader, light->direction)) != SF_OK)
+        return status;
+    sf_param_reader_at(reader, "%s", at);
+    if (light->kind == SF_LIGHT_SPOT && !(light->inner < light->outer))
+        return sf_param_reader_fail(reader, "inner (%g deg) must be less than outer (%g deg)", light->inner,
+                                    light->outer);
+    return SF_OK;
+}
+
 static enum sf_status check_lights(struct sf_scene *scene, struct sf_param_reader *reader)
 {
-    for (uint32_t i = 0; i < scene->light_count; i++) {
-        struct sf_light *light = &scene->lights[i];
-        enum sf_status status;
+    enum sf_status status = SF_OK;
+    char at[AT_BYTES];
 
-        if (light->kind == SF_LIGHT_POINT)
-            continue;
-        sf_param_reader_at(reader, "/lights/%u/direction", (unsigned)i);
-        if ((status = need_direction(reader, light->direction)) != SF_OK)
-            return status;
-        if (light->kind == SF_LIGHT_SPOT && !(light->inner < light->outer)) {
-            sf_param_reader_at(reader, "/lights/%u", (unsigned)i);
-            return sf_param_reader_fail(reader, "inner (%g deg) must be less than outer (%g deg)", light->inner,
-                                        light->outer);
-        }
+    for (uint32_t i = 0; i < scene->light_count && status == SF_OK; i++) {
+        snprintf(at, sizeof at, "/lights/%u", (unsigned)i);
+        status = sf_scene_check_light(&scene->lights[i], reader, at);
     }
-    return SF_OK;
+    return status;
 }
 
 static enum sf_status check_objects(struct sf_scene *scene, struct sf_param_reader *reader)
@@ -106,18 +117,18 @@ static enum sf_status check_objects(struct sf_scene *scene, struct sf_param_read
     return SF_OK;
 }
 
-static enum sf_status check_path(const struct sf_emitter *emitter, struct sf_param_reader *reader, uint32_t index)
+static enum sf_status check_path(const struct sf_emitter *emitter, struct sf_param_reader *reader, const char *at)
 {
     const struct sf_path_key *last = emitter->path + (emitter->path_count ? emitter->path_count - 1 : 0);
 
     for (uint32_t i = 1; i < emitter->path_count; i++) {
-        sf_param_reader_at(reader, "/emitters/%u/path/%u/time", (unsigned)index, (unsigned)i);
+        sf_param_reader_at(reader, "%s/path/%u/time", at, (unsigned)i);
         if (!(emitter->path[i].time > emitter->path[i - 1].time))
             return sf_param_reader_fail(reader, "%g s is not later than the key before", emitter->path[i].time);
     }
     if (!emitter->path_loop)
         return SF_OK;
-    sf_param_reader_at(reader, "/emitters/%u/path_loop", (unsigned)index);
+    sf_param_reader_at(reader, "%s/path_loop", at);
     if (emitter->path_count < 3)
         return sf_param_reader_fail(reader, "needs a path of three keys at least");
     if (memcmp(last->position, emitter->path[0].position, sizeof last->position) != 0)
@@ -125,27 +136,37 @@ static enum sf_status check_path(const struct sf_emitter *emitter, struct sf_par
     return SF_OK;
 }
 
+enum sf_status sf_scene_check_emitter(const struct sf_scene *scene, struct sf_emitter *emitter,
+                                      struct sf_param_reader *reader, const char *at)
+{
+    enum sf_status status;
+
+    sf_param_reader_at(reader, "%s/direction", at);
+    if (!sf_normalize(emitter->direction) && emitter->kind == SF_EMITTER_CONE)
+        return sf_param_reader_fail(reader, "0,0,0 has no direction; 0,1,0 is straight up");
+    if ((status = check_path(emitter, reader, at)) != SF_OK)
+        return status;
+    if (emitter->extinction < 0)
+        emitter->extinction = scene->medium.extinction;
+    sf_param_reader_at(reader, "%s", at);
+    if (emitter->kind == SF_EMITTER_MESH && !emitter->file)
+        return sf_param_reader_fail(reader, "file is missing (OBJ or glTF)");
+    if (emitter->kind == SF_EMITTER_LIST && !emitter->file == !emitter->list)
+        return sf_param_reader_fail(reader, emitter->file ? "particles and file exclude each other"
+                                                          : "particles or file is missing");
+    return SF_OK;
+}
+
 static enum sf_status check_emitters(struct sf_scene *scene, struct sf_param_reader *reader)
 {
-    for (uint32_t i = 0; i < scene->emitter_count; i++) {
-        struct sf_emitter *emitter = &scene->emitters[i];
-        enum sf_status status;
+    enum sf_status status = SF_OK;
+    char at[AT_BYTES];
 
-        sf_param_reader_at(reader, "/emitters/%u/direction", (unsigned)i);
-        if (!sf_normalize(emitter->direction) && emitter->kind == SF_EMITTER_CONE)
-            return sf_param_reader_fail(reader, "0,0,0 has no direction; 0,1,0 is straight up");
-        if ((status = check_path(emitter, reader, i)) != SF_OK)
-            return status;
-        if (emitter->extinction < 0)
-            emitter->extinction = scene->medium.extinction;
-        sf_param_reader_at(reader, "/emitters/%u", (unsigned)i);
-        if (emitter->kind == SF_EMITTER_MESH && !emitter->file)
-            return sf_param_reader_fail(reader, "file is missing (OBJ or glTF)");
-        if (emitter->kind == SF_EMITTER_LIST && !emitter->file == !emitter->list)
-            return sf_param_reader_fail(reader, emitter->file ? "particles and file exclude each other"
-                                                              : "particles or file is missing");
+    for (uint32_t i = 0; i < scene->emitter_count && status == SF_OK; i++) {
+        snprintf(at, sizeof at, "/emitters/%u", (unsigned)i);
+        status = sf_scene_check_emitter(scene, &scene->emitters[i], reader, at);
     }
-    return SF_OK;
+    return status;
 }
 
 static enum sf_status check_forces(struct sf_scene *scene, struct sf_param_reader *reader)
@@ -200,6 +221,52 @@ enum sf_status sf_scene_check(struct sf_scene *scene, struct sf_param_reader *re
     return status;
 }
 
+/* ---- how many particles ---- */
+
+static double mean_life(const struct sf_emitter *emitter)
+{
+    return ((double)emitter->lifetime[0] + emitter->lifetime[1]) / 2;
+}
+
+static double made(const void *user, double local)
+{
+    const struct sf_emitter *emitter = user;
+
+    return sf_emitter_stream(emitter, local) + (emitter->start < local ? emitter->burst : 0);
+}
+
+/* Particles of effects that live at the time. */
+static double timed_alive(const struct sf_scene *scene, double time)
+{
+    double sum = 0;
+
+    for (uint32_t i = 0; i < scene->emitter_count; i++) {
+        const struct sf_emitter *emitter = &scene->emitters[i];
+
+        if (emitter->timing)
+            sum += sf_timing_sum(emitter->timing, time, made, emitter) -
+                   sf_timing_sum(emitter->timing, time - mean_life(emitter), made, emitter);
+    }
+    return sum;
+}
+
+/* The most of them at once, looked for at the moments just before one dies out, and after one has begun. */
+static double most_timed(const struct sf_scene *scene)
+{
+    double most = 0;
+
+    for (uint32_t i = 0; i < scene->emitter_count; i++) {
+        const struct sf_emitter *emitter = &scene->emitters[i];
+        double begin = 0, life = mean_life(emitter);
+
+        for (uint32_t k = 0; emitter->timing && k < emitter->timing->clock_count; k++)
+            begin += emitter->timing->clocks[k].start;
+        for (int k = 0; emitter->timing && k < LOOKS; k++)
+            most = fmax(most, timed_alive(scene, begin + emitter->start + life * (k + 0.999) / (LOOKS / 2)));
+    }
+    return most;
+}
+
 enum sf_status sf_scene_check_particles(struct sf_scene *scene, struct sf_param_reader *reader)
 {
     uint64_t listed = 0;
@@ -207,7 +274,7 @@ enum sf_status sf_scene_check_particles(struct sf_scene *scene, struct sf_param_
 
     for (uint32_t i = 0; i < scene->emitter_count; i++) {
         struct sf_emitter *emitter = &scene->emitters[i];
-        double life = ((double)emitter->lifetime[0] + emitter->lifetime[1]) / 2;
+        double life = mean_life(emitter);
 
         for (uint32_t k = 0; k < emitter->list_count; k++) {
             struct sf_listed *particle = &emitter->list[k];
@@ -222,8 +289,9 @@ enum sf_status sf_scene_check_particles(struct sf_scene *scene, struct sf_param_
         listed += emitter->list_count;
         if (emitter->duration > 0 && emitter->duration < life)
             life = emitter->duration;
-        expected += emitter->rate * life + emitter->burst;
+        expected += emitter->timing ? 0 : emitter->rate * life + emitter->burst;
     }
+    expected += most_timed(scene);
     sf_param_reader_at(reader, "/sim/capacity");
     if (listed > (uint64_t)scene->sim.capacity)
         return sf_param_reader_fail(reader, "%d is too small for the %llu particles that are listed",

@@ -52,6 +52,43 @@ static unsigned picture_difference(const struct sf_environment *before, const st
     return 0;
 }
 
+static bool same_timing(const struct sf_timing *a, const struct sf_timing *b)
+{
+    return same_bytes(a, b, sizeof *a);
+}
+
+/* What effect files say, besides what the table's rows do. */
+static unsigned effects_difference(const struct sf_scene *before, const struct sf_scene *after)
+{
+    unsigned found = 0;
+
+    for (uint32_t i = 0; i < before->emitter_count && i < after->emitter_count; i++)
+        if (!same_timing(before->emitters[i].timing, after->emitters[i].timing))
+            found |= SF_REBUILD_SIM;
+    for (uint32_t i = 0; i < before->light_count && i < after->light_count; i++) {
+        const struct sf_light *a = &before->lights[i], *b = &after->lights[i];
+
+        if (!same_timing(a->timing, b->timing) || a->flicker != b->flicker || a->frequency != b->frequency)
+            found |= SF_REBUILD_READ;
+    }
+    if (!before->flash_count != !after->flash_count)
+        found |= SF_REBUILD_GRAPH;
+    if (before->flash_count != after->flash_count || before->shake_count != after->shake_count)
+        return found | SF_REBUILD_READ;
+    for (uint32_t i = 0; i < before->flash_count; i++)
+        if (!same_bytes(before->flashes[i].color, after->flashes[i].color, sizeof after->flashes[i].color) ||
+            before->flashes[i].strength != after->flashes[i].strength ||
+            !same_timing(before->flashes[i].timing, after->flashes[i].timing))
+            found |= SF_REBUILD_READ;
+    for (uint32_t i = 0; i < before->shake_count; i++)
+        if (before->shakes[i].amplitude != after->shakes[i].amplitude ||
+            before->shakes[i].angle != after->shakes[i].angle ||
+            before->shakes[i].frequency != after->shakes[i].frequency ||
+            !same_timing(before->shakes[i].timing, after->shakes[i].timing))
+            found |= SF_REBUILD_READ;
+    return found;
+}
+
 unsigned sf_scene_difference(const struct sf_scene *before, const struct sf_scene *after)
 {
     unsigned found = sf_param_difference(&sf_scene_group, before, after, 0);
@@ -59,5 +96,6 @@ unsigned sf_scene_difference(const struct sf_scene *before, const struct sf_scen
     if (before->atlas.hash != after->atlas.hash)
         found |= SF_REBUILD_ASSETS;
     found |= meshes_difference(before, after) | picture_difference(&before->environment, &after->environment);
+    found |= effects_difference(before, after);
     return found ? found | SF_REBUILD_READ : 0;
 }

@@ -8,8 +8,8 @@
 #include "scene/table.h"
 
 /* A million particles take three million objects and lists, and fifteen million values. */
-enum { SCENE_MIB_MAX = 64, NESTS_MAX = 4000000, VALUES_MAX = 20000000, REASON_BYTES = 256 };
-#define SCENE_BYTES_MAX ((size_t)SCENE_MIB_MAX << 20)
+enum { NESTS_MAX = 4000000, VALUES_MAX = 20000000, REASON_BYTES = 256 };
+#define SCENE_BYTES_MAX ((size_t)SF_SCENE_MIB_MAX << 20)
 
 /* Every `[]` of three bytes is more than a hundred in memory: what would take gigabytes is refused before it is parsed.
  */
@@ -31,8 +31,8 @@ static bool is_bounded(const char *text, size_t bytes)
     return nests <= NESTS_MAX && values <= VALUES_MAX;
 }
 
-enum sf_status sf_scene_parse_json(const char *name, const char *text, size_t bytes, const struct sf_log *log,
-                                   json_t **out)
+enum sf_status sf_scene_parse_json(const char *name, const char *what, const char *text, size_t bytes,
+                                   const struct sf_log *log, json_t **out)
 {
     char reason[REASON_BYTES];
     json_error_t error;
@@ -41,14 +41,14 @@ enum sf_status sf_scene_parse_json(const char *name, const char *text, size_t by
     *out = NULL;
     if (bytes > SCENE_BYTES_MAX)
         return sf_fail(log, SF_ERROR_SCENE,
-                       "%s: %zu bytes; a scene holds at most %d MiB. Long lists of particles go into CSV or PLY files",
-                       name, bytes, SCENE_MIB_MAX);
+                       "%s: %zu bytes; %s holds at most %d MiB. Long lists of particles go into CSV or PLY files", name,
+                       bytes, what, SF_SCENE_MIB_MAX);
     if (bytes >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) { /* the mark that some editors put before UTF-8 */
         text += 3;
         bytes -= 3;
     }
     if (bytes == 0)
-        return sf_fail(log, SF_ERROR_SCENE, "%s: the file is empty; a scene is a JSON object", name);
+        return sf_fail(log, SF_ERROR_SCENE, "%s: the file is empty; %s is a JSON object", name, what);
     if (!is_bounded(text, bytes))
         return sf_fail(log, SF_ERROR_SCENE,
                        "%s: more than %d lists and objects or %d values; long lists go into CSV or PLY files", name,
@@ -60,7 +60,7 @@ enum sf_status sf_scene_parse_json(const char *name, const char *text, size_t by
     }
     if (!json_is_object(tree)) {
         json_decref(tree);
-        return sf_fail(log, SF_ERROR_SCENE, "%s: a scene is a JSON object: { ... }", name);
+        return sf_fail(log, SF_ERROR_SCENE, "%s: %s is a JSON object: { ... }", name, what);
     }
     *out = tree;
     return SF_OK;
@@ -79,15 +79,15 @@ static void strip(json_t *tree)
     json_array_foreach(tree, i, value) if (json_is_object(value) || json_is_array(value)) strip(value);
 }
 
-static enum sf_status hash_tree(struct sf_scene *scene, json_t *tree, const struct sf_log *log)
+enum sf_status sf_scene_hash_tree(const char *name, json_t *tree, const struct sf_log *log, uint64_t *hash)
 {
     char *text;
 
     json_object_del(tree, "$schema");
     strip(tree);
     if (!(text = json_dumps(tree, JSON_COMPACT | JSON_SORT_KEYS)))
-        return sf_fail(log, SF_ERROR_MEMORY, "%s: out of memory", scene->path);
-    scene->hash = sf_hash_bytes(text, strlen(text), 0);
+        return sf_fail(log, SF_ERROR_MEMORY, "%s: out of memory", name);
+    *hash = sf_hash_bytes(text, strlen(text), 0);
     free(text);
     return SF_OK;
 }
@@ -156,9 +156,11 @@ static enum sf_status read_tree(struct sf_scene *scene, json_t *tree, const char
     if (status == SF_OK)
         status = keep_stated(scene, log);
     if (status == SF_OK)
-        status = hash_tree(scene, tree, log);
+        status = sf_scene_hash_tree(path, tree, log, &scene->hash);
     if (status == SF_OK)
         status = sf_scene_check(scene, &reader);
+    if (status == SF_OK)
+        status = sf_scene_load_effects(scene, &reader);
     if (status == SF_OK)
         status = sf_scene_load_assets(scene, &reader);
     if (status == SF_OK)
@@ -174,7 +176,7 @@ enum sf_status sf_scene_parse(const char *name, const char *text, size_t bytes, 
     json_t *tree;
 
     *out = NULL;
-    if ((status = sf_scene_parse_json(name, text, bytes, log, &tree)) != SF_OK)
+    if ((status = sf_scene_parse_json(name, "a scene", text, bytes, log, &tree)) != SF_OK)
         return status;
     scene = calloc(1, sizeof *scene);
     if (scene)
@@ -203,7 +205,7 @@ enum sf_status sf_scene_load(const char *path, const char *const *sets, uint32_t
     if (stat(path, &info) == 0 && S_ISREG(info.st_mode) && info.st_size > (off_t)SCENE_BYTES_MAX)
         return sf_fail(log, SF_ERROR_SCENE,
                        "%s: %lld bytes; a scene holds at most %d MiB. Long lists of particles go into CSV or PLY files",
-                       path, (long long)info.st_size, SCENE_MIB_MAX);
+                       path, (long long)info.st_size, SF_SCENE_MIB_MAX);
     if ((status = sf_file_read(path, SCENE_BYTES_MAX, log, &text, &bytes)) != SF_OK)
         return status;
     status = sf_scene_parse(path, text, bytes, sets, set_count, log, scene);

@@ -3,7 +3,7 @@
  * one neighbour. */
 #include <math.h>
 #include <string.h>
-#include "scene/scene.h"
+#include "scene/moment.h"
 
 static const double PI = 3.14159265358979323846;
 
@@ -104,7 +104,8 @@ static void keyframes(const struct sf_camera *camera, double time, struct sf_cam
     }
 }
 
-void sf_scene_camera(const struct sf_scene *scene, double time, struct sf_camera_pose *pose)
+/* As the scene's camera says. */
+static void unshaken(const struct sf_scene *scene, double time, struct sf_camera_pose *pose)
 {
     const struct sf_camera *camera = &scene->camera;
 
@@ -124,6 +125,12 @@ void sf_scene_camera(const struct sf_scene *scene, double time, struct sf_camera
         pose->eye[0] = (float)(camera->target[0] + c * x + s * z);
         pose->eye[2] = (float)(camera->target[2] - s * x + c * z);
     }
+}
+
+void sf_scene_camera(const struct sf_scene *scene, double time, struct sf_camera_pose *pose)
+{
+    unshaken(scene, time, pose);
+    sf_pose_shake(scene, time, pose);
 }
 
 void sf_scene_view(const struct sf_scene *scene, double time, struct sf_camera_view *view)

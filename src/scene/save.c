@@ -176,7 +176,7 @@ enum sf_status sf_scene_save(const char *name, const char *text, size_t bytes, c
     enum sf_status status = check(name, text, bytes, sets, set_count, quiet);
 
     if (status == SF_OK)
-        status = sf_scene_parse_json(name, text, bytes, quiet, &tree);
+        status = sf_scene_parse_json(name, "a scene", text, bytes, quiet, &tree);
     if (status == SF_OK)
         status = sf_file_writer_open(&writer, path, quiet);
     if (status == SF_OK)

@@ -13,14 +13,18 @@
 #include <stdint.h>
 #include "base/array.h"
 #include "base/log.h"
+#include "scene/timeline.h"
 #include "sfumato/sfumato.h"
 
 enum {
     SF_LIGHTS_MAX = 8,
     SF_OBJECTS_MAX = 64,
     SF_MESHES_MAX = 16,
-    SF_EMITTERS_MAX = 16,
+    SF_EMITTERS_MAX = 128,
     SF_FORCES_MAX = 16,
+    SF_EFFECTS_MAX = 64,
+    SF_FLASHES_MAX = 32,
+    SF_SHAKES_MAX = 32,
     SF_RAMP_MAX = 16,
     SF_PATH_MAX = 64, /* keyframes of a camera or an emitter's path */
     SF_PARTICLES_MAX = 1 << 20,
@@ -54,6 +58,8 @@ struct sf_light {
     float position[3];  /* point, spot */
     float inner, outer; /* spot: half angles in deg; smoothstep of the cosine between them */
     bool shadows;
+    const struct sf_timing *timing; /* of an effect's step: its strength multiplies the intensity; NULL: always on */
+    float flicker, frequency;       /* of an effect's step: share of it that comes and goes, so often a second */
 };
 
 enum sf_object_kind { SF_OBJECT_PLANE, SF_OBJECT_BOX, SF_OBJECT_SPHERE, SF_OBJECT_CYLINDER, SF_OBJECT_MESH };
@@ -116,6 +122,7 @@ struct sf_emitter {
     const char *file;   /* mesh, or list's CSV/PLY */
     uint32_t mesh;
     float scale;
+    float rotation;        /* box, mesh: deg about +y, about position; does not turn `direction` */
     bool surface;          /* sphere, box: only from the surface */
     float rate;            /* 1/s */
     int32_t burst;         /* particles at `start` */
@@ -141,6 +148,10 @@ struct sf_emitter {
     bool path_loop;
     struct sf_listed *list;
     uint32_t list_count;
+    /* Of an effect's step: `start`, `duration` and the path count on its innermost clock, and its strength multiplies
+     * the rate. NULL: a scene's own, on the simulation's clock. */
+    const struct sf_timing *timing;
+    const char *origin; /* where it comes from, for messages; NULL: the scene's list */
 };
 
 enum sf_force_kind {
@@ -165,6 +176,24 @@ struct sf_force {
     float radius; /* vortex: core radius. At distance d from the axis, with s = d/radius and e pointing away from the
                      axis, u = 2s/(1 + s^2) (strength cross(axis, e) - pull e) */
     float pull;   /* vortex: m/s inward at radius */
+};
+
+/* ---- effects: what of them is neither an emitter nor a light ---- */
+
+struct sf_placed_effect { /* as the scene states it */
+    const char *file;
+    float position[3];
+    float rotation; /* deg about +y */
+    float scale;
+    struct sf_clock clock; /* on the simulation's clock */
+};
+struct sf_flash {
+    float color[3], strength; /* W/(m2 sr) added to the whole picture, times the timing's strength */
+    const struct sf_timing *timing;
+};
+struct sf_shake {
+    float amplitude, angle, frequency; /* m, deg, 1/s; times the timing's strength */
+    const struct sf_timing *timing;
 };
 
 enum sf_environment_kind { SF_ENVIRONMENT_SKY, SF_ENVIRONMENT_COLOR, SF_ENVIRONMENT_LATLONG, SF_ENVIRONMENT_CUBE };
@@ -306,6 +335,13 @@ struct sf_scene {
     uint32_t emitter_count;
     struct sf_force forces[SF_FORCES_MAX];
     uint32_t force_count;
+    /* As the file lists them. The loader has put their emitters and lights behind the scene's own, and these: */
+    struct sf_placed_effect effects[SF_EFFECTS_MAX];
+    uint32_t effect_count;
+    struct sf_flash flashes[SF_FLASHES_MAX];
+    uint32_t flash_count;
+    struct sf_shake shakes[SF_SHAKES_MAX];
+    uint32_t shake_count;
     struct sf_environment environment;
     int32_t method; /* enum sf_method */
     struct sf_sim_settings sim;
@@ -333,17 +369,29 @@ struct sf_scene {
  * what they are drawn from. */
 unsigned sf_scene_difference(const struct sf_scene *before, const struct sf_scene *after);
 
-/* The camera at a moment (fixed, orbit, keyframes resolved). */
+/* Where an emitter comes from, for messages: "/emitters/3", or the place in the effect file. */
+enum { SF_PLACE_BYTES = 512 };
+const char *sf_emitter_place(const struct sf_scene *scene, uint32_t emitter, char buffer[SF_PLACE_BYTES]);
+
+/* The lights as they are at a moment (s, counted from frame 0): those of effects with the intensity that they have then. */
+void sf_scene_lights(const struct sf_scene *scene, double time, struct sf_light lights[SF_LIGHTS_MAX]);
+/* Radiance that flashes add to the whole picture at that moment. */
+void sf_scene_flash(const struct sf_scene *scene, double time, float rgb[3]);
+
+/* The camera at a moment (fixed, orbit, keyframes resolved), shaken by what shakes it then. */
 struct sf_camera_pose {
     float eye[3], target[3], up[3], fov, near_clip;
 };
 void sf_scene_camera(const struct sf_scene *scene, double time, struct sf_camera_pose *pose);
-/* Where an emitter is at a moment of the simulation's clock, and its velocity (zero before the path's first key and
+/* Where an emitter is at a moment of the clock that its path counts on (the simulation's, or of its step), and its velocity (zero before the path's first key and
  * after its last). */
 void sf_scene_emitter_at(const struct sf_emitter *emitter, double time, float position[3], float velocity[3]);
 
 /* What sf_texture_create makes the atlas from, when it is to be made. */
 void sf_scene_atlas_options(const struct sf_atlas *atlas, struct sf_texture_options *options);
+/* Particles, not rounded, that the stream of an effect's emitter has made when its step's innermost clock has run for
+ * `local` s. */
+double sf_emitter_stream(const struct sf_emitter *emitter, double local);
 
 /* Radiance of the environment seen along a unit vector: what is drawn behind the scene when it is visible. */
 void sf_environment_radiance(const struct sf_environment *environment, const float direction[3], float rgb[3]);

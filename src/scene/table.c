@@ -239,6 +239,9 @@ static const struct sf_param scene_rows[] = {
     {ROW_LIST("forces", struct sf_scene, forces, force_count, sf_scene_force_group, 0, SF_FORCES_MAX,
               "what moves the smoke"),
      .rebuild = SF_REBUILD_SIM},
+    {ROW_LIST("effects", struct sf_scene, effects, effect_count, sf_scene_effect_group, 0, SF_EFFECTS_MAX,
+              "effects from files"),
+     .rebuild = SF_REBUILD_SIM},
     {ROW_OBJECT("environment", environment, environment_group, "light from all around")},
     {ROW_ENUM("method", struct sf_scene, method, methods, SF_METHOD_THICK, "how the smoke is drawn"),
      .rebuild = SF_REBUILD_GRAPH | SF_REBUILD_ASSETS}, /* methods have textures of their own */

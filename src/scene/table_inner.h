@@ -37,6 +37,6 @@
     }
 
 extern const struct sf_param_group sf_scene_camera_group, sf_scene_light_group, sf_scene_object_group,
-    sf_scene_emitter_group, sf_scene_force_group;
+    sf_scene_emitter_group, sf_scene_force_group, sf_scene_effect_group;
 
 #endif

@@ -4,13 +4,15 @@
 #include <string.h>
 
 #include "base/hash.h"
+#include "sim/births.h"
 #include "sim/obstacle.h"
 
-_Static_assert(sizeof(struct sf_sim_record) == 64 && sizeof(struct sf_sim_emitter) == 112, "std140");
+_Static_assert(sizeof(struct sf_sim_record) == 64 && sizeof(struct sf_sim_emitter) == 128, "std140");
 _Static_assert(sizeof(struct sf_sim_turbulence) == 48 && sizeof(struct sf_sim_vortex) == 48, "std140");
-_Static_assert(offsetof(struct sf_sim_now, records) == 112, "std140");
+_Static_assert(offsetof(struct sf_sim_now, turbulences) == 112, "std140");
+_Static_assert(offsetof(struct sf_sim_births, records) == 128 * SF_SIM_EMITTERS, "std430");
 _Static_assert(sizeof(struct sf_sim_now) <= 16384, "the least that every device offers for a uniform block");
-_Static_assert(SF_SIM_EMITTERS == SF_EMITTERS_MAX && SF_SIM_RECORDS >= 2 * SF_EMITTERS_MAX, "every emitter has room");
+_Static_assert(SF_SIM_EMITTERS == SF_EMITTERS_MAX && SF_EMITTERS_MAX <= 256, "sf_particle.look has 8 bits");
 _Static_assert(SF_SIM_TURBULENCES >= SF_FORCES_MAX && SF_SIM_VORTICES >= SF_FORCES_MAX &&
                    SF_FRAME_OBJECTS >= SF_OBJECTS_MAX,
                "every force has room");
@@ -23,93 +25,6 @@ static const double PI = 3.14159265358979323846;
 double sf_sim_step_rate(const struct sf_scene *scene)
 {
     return (double)scene->sim.fps * scene->sim.substeps;
-}
-
-/* The stream's births so far, not rounded, `steps` after its start. Multiplied before it is divided: whole numbers come
- * out whole. */
-static double stream(const struct sf_emitter *emitter, double step_rate, double steps)
-{
-    if (emitter->duration > 0)
-        steps = fmin(steps, emitter->duration * step_rate);
-    return emitter->rate * steps / step_rate;
-}
-
-static uint64_t stream_births(const struct sf_emitter *emitter, double step_rate, uint64_t step)
-{
-    /* The float nearest to a decimal may lie just above it; a millionth of a particle keeps 0.1 s from becoming a step
-     * later. */
-    double births = floor(stream(emitter, step_rate, (double)step - emitter->start * step_rate) + 1e-6);
-
-    return births > 0 ? (uint64_t)births : 0;
-}
-
-/* What is born all at once in the step that holds `start`. */
-static uint64_t burst_births(const struct sf_emitter *emitter)
-{
-    return emitter->kind == SF_EMITTER_LIST ? emitter->list_count : (uint64_t)emitter->burst;
-}
-
-static bool burst_over(const struct sf_emitter *emitter, double step_rate, uint64_t step)
-{
-    if (emitter->kind == SF_EMITTER_LIST && !(emitter->start > 0))
-        return true; /* there from the beginning */
-    return emitter->start * step_rate < (double)step;
-}
-
-uint64_t sf_sim_births(const struct sf_scene *scene, const struct sf_emitter *emitter, uint64_t step)
-{
-    double step_rate = sf_sim_step_rate(scene);
-    uint64_t births = burst_over(emitter, step_rate, step) ? burst_births(emitter) : 0;
-
-    return emitter->kind == SF_EMITTER_LIST ? births : births + stream_births(emitter, step_rate, step);
-}
-
-static void add_record(struct sf_sim_now *now, const struct sf_sim_record *pose, uint64_t births, double moment,
-                       double interval)
-{
-    uint32_t room = now->capacity - now->births;
-    uint32_t count = births < room ? (uint32_t)births : room;
-    struct sf_sim_record *record = &now->records[now->record_count];
-
-    now->refused += (uint32_t)(births - count);
-    if (count == 0)
-        return;
-    *record = *pose;
-    record->first = now->births;
-    record->count = count;
-    record->begin[3] = (float)moment;
-    record->end[3] = (float)interval;
-    now->births += count;
-    now->record_count++;
-}
-
-static void feed_births(const struct sf_scene *scene, const struct sf_sim_layout *layout, uint64_t step,
-                        struct sf_sim_now *now)
-{
-    double rate = sf_sim_step_rate(scene);
-    uint64_t first_id = 0;
-
-    for (uint32_t i = 0; i < scene->emitter_count; i++) {
-        const struct sf_emitter *emitter = &scene->emitters[i];
-        uint64_t before = emitter->kind == SF_EMITTER_LIST ? 0 : stream_births(emitter, rate, step);
-        uint64_t after = emitter->kind == SF_EMITTER_LIST ? 0 : stream_births(emitter, rate, step + 1);
-        double start = emitter->start * rate, began = stream(emitter, rate, (double)step - start);
-        struct sf_sim_record pose = {.emitter = i, .listed = layout->listed[i]};
-        float unused[3];
-
-        first_id += sf_sim_births(scene, emitter, step);
-        sf_scene_emitter_at(emitter, (double)step / rate, pose.begin, unused);
-        sf_scene_emitter_at(emitter, (double)(step + 1) / rate, pose.end, unused);
-        /* The mean velocity over the step: what the line from begin to end amounts to. */
-        for (int axis = 0; axis < 3; axis++)
-            pose.drift[axis] = (float)(emitter->inherit * ((double)pose.end[axis] - pose.begin[axis]) * rate);
-        if (!burst_over(emitter, rate, step) && burst_over(emitter, rate, step + 1))
-            add_record(now, &pose, burst_births(emitter), start - (double)step, 0);
-        if (after > before)
-            add_record(now, &pose, after - before, ((double)before + 1 - began) / emitter->rate * rate,
-                       rate / emitter->rate);
-    }
-    now->first_id = (uint32_t)first_id;
 }
 
 /* Integral of exp(-k t) over 0..h. */
@@ -184,6 +99,8 @@ static void feed_emitter(const struct sf_scene *scene, const struct sf_sim_layou
     to->change[2] = from->fade_in;
     to->change[3] = from->fade_out;
     to->turn[0] = from->spin;
+    to->facing[0] = (float)cos(from->rotation * PI / 180);
+    to->facing[1] = (float)sin(from->rotation * PI / 180);
     to->surface = from->surface;
     to->triangles = layout->triangles[i];
     to->triangle_count = layout->triangle_counts[i];
@@ -267,16 +184,16 @@ static void feed_forces(const struct sf_scene *scene, uint64_t step, struct sf_s
 }
 
 size_t sf_sim_feed(const struct sf_scene *scene, const struct sf_sim_layout *layout, uint64_t step,
-                   struct sf_sim_now *now)
+                   struct sf_sim_now *now, struct sf_sim_births *births)
 {
     memset(now, 0, offsetof(struct sf_sim_now, objects));
     now->seed = (uint32_t)scene->sim.seed;
     now->capacity = (uint32_t)scene->sim.capacity;
     now->dt = (float)(1 / sf_sim_step_rate(scene));
     feed_forces(scene, step, now);
-    feed_births(scene, layout, step, now);
+    sf_sim_feed_births(scene, layout, step, now, births);
     for (uint32_t i = 0; i < scene->emitter_count; i++)
-        feed_emitter(scene, layout, i, now, &now->emitters[i]);
+        feed_emitter(scene, layout, i, now, &births->emitters[i]);
     for (uint32_t i = 0; i < scene->object_count; i++)
         if (sf_obstacle_collides(&scene->objects[i]))
             sf_obstacle_fill(&scene->objects[i], &now->objects[now->object_count++]);

@@ -8,15 +8,10 @@
 /* Fixed steps in a second: fps x substeps. */
 double sf_sim_step_rate(const struct sf_scene *scene);
 
-/* Births of an emitter (lists that are there from the beginning included) before step number `step` begins, steps
- * counted from 0: the stream has given floor(rate (t - start)) by the time t; a burst, or a list, is born in the step
- * in which `start` lies. */
-uint64_t sf_sim_births(const struct sf_scene *scene, const struct sf_emitter *emitter, uint64_t step);
-
 /* Everything for the step from step/rate to (step+1)/rate. The scene is read anew each time, so that forces and
- * emitters can be changed while it runs. Only the objects that are there are written, at the end of `now`. Returns the
- * bytes to upload. */
+ * emitters can be changed while it runs. Only the objects that are there are written, at the end of `now`, and only the
+ * emitters and records that are there in `births`. Returns the bytes of `now` to upload. */
 size_t sf_sim_feed(const struct sf_scene *scene, const struct sf_sim_layout *layout, uint64_t step,
-                   struct sf_sim_now *now);
+                   struct sf_sim_now *now, struct sf_sim_births *births);
 
 #endif

@@ -18,7 +18,7 @@ struct setup {
     struct sf_graph *graph;
     struct sf_plan *plan;
     struct sf_player *player;
-    sf_resource upload;
+    sf_resource now, births; /* uploads */
 };
 
 struct sf_particles {
@@ -28,6 +28,7 @@ struct sf_particles {
     uint64_t steps;
     uint32_t emit_groups[3]; /* of this step; the plan reads it at each recording */
     struct sf_sim_now now;
+    struct sf_sim_births births;
 };
 
 /* What of the scene shapes the passes: the lengths of the loops over it, as constants 1 to 4 of the shaders. */
@@ -104,6 +105,9 @@ static void declare_passes(const struct sf_scene *scene, struct shape shape, con
     sf_sim_layout_fill(scene, &layout);
     sf_resource now = sf_graph_buffer(
         graph, &(struct sf_buffer_desc){.name = "sim.now", .lifetime = SF_UPLOAD, .bytes = sizeof(struct sf_sim_now)});
+    sf_resource births = sf_graph_buffer(
+        graph,
+        &(struct sf_buffer_desc){.name = "sim.births", .lifetime = SF_UPLOAD, .bytes = sizeof(struct sf_sim_births)});
     sf_resource scratch = sf_graph_buffer(
         graph,
         &(struct sf_buffer_desc){.name = "sim.scratch",
@@ -127,6 +131,7 @@ static void declare_passes(const struct sf_scene *scene, struct shape shape, con
         {.resource = list, .access = SF_ACCESS_STORAGE_WRITE, .binding = 2},
         {.resource = counts, .access = SF_ACCESS_STORAGE_MODIFY, .binding = 3},
         {.resource = scratch, .access = SF_ACCESS_STORAGE_READ, .binding = 4},
+        {.resource = births, .access = SF_ACCESS_STORAGE_READ, .binding = 5},
     };
     const struct sf_use emit_uses[] = {
         {.resource = now, .access = SF_ACCESS_UNIFORM, .binding = 0},
@@ -134,6 +139,7 @@ static void declare_passes(const struct sf_scene *scene, struct shape shape, con
         {.resource = counts, .access = SF_ACCESS_STORAGE_MODIFY, .binding = 2},
         {.resource = triangles, .access = SF_ACCESS_STORAGE_READ, .binding = 3},
         {.resource = listed, .access = SF_ACCESS_STORAGE_READ, .binding = 4},
+        {.resource = births, .access = SF_ACCESS_STORAGE_READ, .binding = 5},
     };
     struct sf_pass_desc pass = {.kind = SF_PASS_COMPUTE, .constant_count = 5, .groups = {shape.groups, 1, 1}};
 
@@ -258,7 +264,8 @@ static enum sf_status create_player(const struct sf_particles *particles, struct
         status = sf_player_create(particles->gpu, setup->plan, &setup->player);
     if (status)
         return status;
-    setup->upload = sf_graph_find(setup->graph, "sim.now");
+    setup->now = sf_graph_find(setup->graph, "sim.now");
+    setup->births = sf_graph_find(setup->graph, "sim.births");
     sf_player_bind_buffer(setup->player, sf_graph_find(setup->graph, "particles"), setup->list);
     sf_player_bind_buffer(setup->player, sf_graph_find(setup->graph, "particles.counts"), setup->counts);
     sf_player_bind_buffer(setup->player, sf_graph_find(setup->graph, "sim.triangles"), setup->triangles);
@@ -386,18 +393,20 @@ enum sf_status sf_particles_reset(struct sf_particles *particles)
 enum sf_status sf_particles_step(struct sf_particles *particles)
 {
     const struct setup *setup = &particles->setup;
-    void *upload = sf_player_upload(setup->player, setup->upload);
+    void *now = sf_player_upload(setup->player, setup->now), *births = sf_player_upload(setup->player, setup->births);
     size_t bytes;
     enum sf_status status;
 
-    if (!upload)
+    if (!now || !births)
         return sf_fail(
             particles->log, SF_ERROR_INTERNAL,
             "the simulation has nowhere to put step %llu; a step is recorded between sf_frame_begin and sf_frame_end",
             (unsigned long long)particles->steps);
     /* Composed in ordinary memory, since mapped memory may be slow to read. */
-    bytes = sf_sim_feed(setup->scene, &setup->layout, particles->steps, &particles->now);
-    memcpy(upload, &particles->now, bytes);
+    bytes = sf_sim_feed(setup->scene, &setup->layout, particles->steps, &particles->now, &particles->births);
+    memcpy(now, &particles->now, bytes);
+    memcpy(births, &particles->births,
+           offsetof(struct sf_sim_births, records) + particles->now.record_count * sizeof particles->births.records[0]);
     particles->emit_groups[0] = (particles->now.births + EMIT_LANES - 1) / EMIT_LANES;
     particles->emit_groups[1] = particles->emit_groups[2] = 1;
     status = sf_player_play(setup->player);

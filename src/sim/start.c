@@ -153,6 +153,7 @@ enum sf_status sf_sim_triangles(const struct sf_scene *scene, const struct sf_lo
         const struct sf_mesh *mesh = emitter->kind == SF_EMITTER_MESH ? &scene->meshes[emitter->mesh] : NULL;
         uint32_t count = mesh ? mesh->index_count / 3 : 0;
         double total = 0, sum = 0;
+        char place[SF_PLACE_BYTES];
 
         if (!mesh)
             continue;
@@ -160,9 +161,10 @@ enum sf_status sf_sim_triangles(const struct sf_scene *scene, const struct sf_lo
             total += fill_triangle(mesh, &mesh->indices[3 * (size_t)i], &triangles[i]);
         if (!(total > 0) || !isfinite(total))
             return sf_fail(log, SF_ERROR_SCENE,
-                           "%s: /emitters/%u: the mesh '%s' has no surface to emit from; give one with triangles that "
+                           "%s: %s: the mesh '%s' has no surface to emit from; give one with triangles that "
                            "have an area",
-                           scene->path ? scene->path : "scene", e, mesh->file ? mesh->file : "");
+                           scene->path ? scene->path : "scene", sf_emitter_place(scene, e, place),
+                           mesh->file ? mesh->file : "");
         for (uint32_t i = 0; i < count; i++) {
             sum += fill_triangle(mesh, &mesh->indices[3 * (size_t)i], &triangles[i]);
             /* Rounding may leave the end below the last word; the search ends at the last triangle anyway. */

@@ -65,6 +65,12 @@ printf '{"//": "\377\376"}' >latin.json
 expect 3 "latin.json" check latin.json
 awk 'BEGIN { for (i = 0; i < 100000; i++) printf "[" }' >deep.json
 expect 3 "deep.json" check deep.json
+echo '{"steps": [{"type": "flash", "strngth": 1}]}' >bang.json
+echo '{"effects": [{"file": "bang.json"}]}' >bangs.json
+expect 3 "/steps/0/strngth: unknown key, did you mean strength?" effect bang.json
+expect 7 "missing.json" effect missing.json
+expect 3 "effect-inner.json: ok: 1 emitter" effect bang.json "$SF_SOURCE_ROOT/scenes/assets/effect-inner.json"
+expect 3 "bang.json: /steps/0/strngth" check bangs.json
 # check goes on after a bad one, and its code is the first failure's.
 expect 3 "sphere.json: ok: thick" check unknown.json "$tiny" missing.json
 grep -q "missing.json" err || fail "check stopped at the first bad scene"

@@ -8,7 +8,7 @@ expect 0 "sfumato COMMAND" --help
 expect 0 "sfumato 0." --version
 run "$SFUMATO"
 [ "$code" -eq 2 ] || fail "no command: exit code $code"
-for command in capture bench verify texture devices graph params check; do
+for command in capture bench verify texture devices graph params check effect; do
     expect 0 "sfumato $command" help $command
     cp out by_help
     expect 0 "sfumato $command" $command --help

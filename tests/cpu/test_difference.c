@@ -79,6 +79,9 @@ static void test_single_values(void **state)
         {"all", "larsson.soft=0", GRAPH},
         {"all", "thick.ambient=1", READ},
         {"all", "thick.resolution=full", GRAPH},
+        {"effects", "effects.1.start=0.6", SIM}, /* by its list */
+        {"effects", "effects.0.position=0,0.3,0.1", SIM},
+        {"effects", "effects.0.file=../assets/effect-inner.json", SIM | ASSETS | GRAPH},
         {"latlong", "environment.rotation=91", READ},
         {"latlong", "environment.type=latlong", 0},
         {"mesh", "objects.1.rotation=0,26,0", SIM},
@@ -344,6 +347,7 @@ static void trace_graph(const struct sf_scene *scene, uint64_t *hash)
 static void trace_sim(const struct sf_scene *scene, uint64_t *hash)
 {
     static struct sf_sim_now now;
+    static struct sf_sim_births births;
     struct sf_sim_layout layout;
     struct sf_particle_counts counts;
     struct sf_graph *graph = NULL;
@@ -356,9 +360,11 @@ static void trace_sim(const struct sf_scene *scene, uint64_t *hash)
     sf_sim_layout_fill(scene, &layout);
     STIR(hash, layout);
     for (uint64_t step = 0; step < 100; step += 1 + step / 8) {
-        size_t bytes = sf_sim_feed(scene, &layout, step, &now);
+        size_t bytes = sf_sim_feed(scene, &layout, step, &now, &births);
 
         stir(hash, &now, bytes);
+        stir(hash, births.emitters, scene->emitter_count * sizeof births.emitters[0]);
+        stir(hash, births.records, now.record_count * sizeof births.records[0]);
     }
     struct sf_particle *particles = calloc(layout.first_total + layout.listed_total + 1, sizeof *particles);
     struct sf_sim_triangle *triangles = calloc(layout.triangle_total + 1, sizeof *triangles);
@@ -511,7 +517,7 @@ static void try_control(const char *path, const struct sf_scene *scene, const st
                         const struct sf_control *from)
 {
     const char *const files[] = {"../assets/pyramid.gltf", "../assets/house.obj", "../assets/tiny.csv", panorama,
-                                 "../assets/cube-nx.png"};
+                                 "../assets/cube-nx.png", "../assets/effect-inner.json"};
     struct sf_control control = *from;
 
     if (control.kind == SF_CONTROL_TEXT) {
@@ -565,6 +571,7 @@ static void test_every_row_has_the_bits_that_it_needs(void **state)
                   {"latlong", "environment", "method=thick"},
                   {"cube", "camera", "method=thick"},
                   {"sphere", "", "method=thick"},
+                  {"effects", "effects", "method=thick"},
                   {"list-csv", "", "method=thick"},
                   {"list-ply", "", "method=thick"},
                   {"atlas", "atlas", "method=thick"},

@@ -41,6 +41,8 @@ static void take_names(struct sf_scene *to, const struct sf_scene *from)
     for (uint32_t i = 0; i < to->emitter_count; i++)
         to->emitters[i].file = from->emitters[i].file;
     to->atlas.file = from->atlas.file;
+    for (uint32_t i = 0; i < to->effect_count; i++)
+        to->effects[i].file = from->effects[i].file;
     to->environment.file = from->environment.file;
     memcpy(to->environment.files, from->environment.files, sizeof to->environment.files);
 }

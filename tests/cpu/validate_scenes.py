@@ -29,6 +29,12 @@ def expect(name, scene, right):
 scenes = sorted((root / "scenes").glob("*.json")) + sorted((root / "scenes/tiny").glob("*.json"))
 for path in scenes:
     expect(path.name, json.loads(path.read_text()), True)
+effects = sorted((root / "scenes/effects").glob("*.json")) + sorted((root / "scenes/assets").glob("effect-*.json"))
+scene_validator, validator = validator, jsonschema.Draft202012Validator(json.loads((root / "docs/effect.schema.json").read_text()))
+for path in effects:
+    expect(path.name, json.loads(path.read_text()), True)
+expect("a scene is no effect", json.loads(scenes[0].read_text()), False)
+validator = scene_validator
 base = json.loads((root / "scenes/tiny/all.json").read_text())
 for name, change in {
     "unknown key": lambda s: s.update(emiters=[]),
@@ -43,5 +49,5 @@ for name, change in {
     scene = copy.deepcopy(base)
     change(scene)
     expect(name, scene, False)
-print(f"{len(scenes)} scenes, {failures} failures")
+print(f"{len(scenes)} scenes, {len(effects)} effects, {failures} failures")
 sys.exit(1 if failures else 0)

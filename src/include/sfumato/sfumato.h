@@ -93,8 +93,9 @@ struct sf_scene_info {
     const char *method; /* name */
     uint64_t hash;      /* of scene, sets and named files */
     double fps;
-    uint32_t capacity; /* particles */
-    uint32_t lights, objects, emitters, forces, meshes;
+    uint32_t capacity;                                  /* particles */
+    uint32_t lights, objects, emitters, forces, meshes; /* lights and emitters of effects among them */
+    uint32_t effects, flashes, shakes;
     uint32_t listed;  /* explicit particles */
     float exposure;   /* stops */
     const char *tone; /* name of the tone mapping for 8-bit output */
@@ -107,17 +108,22 @@ void sf_scene_describe(const struct sf_scene *scene, struct sf_scene_info *info)
 enum sf_status sf_scene_save(const char *name, const char *text, size_t bytes, const char *const *sets,
                              uint32_t set_count, const char *path, const struct sf_log *log);
 
+/* What an effect file does, for people: a line for each step, in the order of their beginnings, those of effects within
+ * it too. Checks it like a scene that has it. SF_ERROR_SCENE, SF_ERROR_IO. *text is malloc'ed. */
+enum sf_status sf_effect_print(const char *path, const struct sf_log *log, char **text);
+
 struct sf_camera_view {
     float eye[3], target[3], up[3];
     float fov;       /* deg, vertical */
     float near_clip; /* m */
 };
-/* The scene's camera at a time in s (frame/fps). */
+/* The scene's camera at a time in s (frame/fps), shaken by the effects that do. */
 void sf_scene_view(const struct sf_scene *scene, double time, struct sf_camera_view *view);
 
 /* ---- the parameter table ---- */
 
-/* As a document: "text", "json-schema" or "markdown". */
+/* As a document: "text", "json-schema" or "markdown"; of effect files "effect-text", "effect-json-schema" or
+ * "effect-markdown". */
 enum sf_status sf_params_print(const char *format, const struct sf_log *log, char **text);
 
 enum sf_control_kind {
