@@ -69,8 +69,7 @@ enum sf_status sf_larsson_light(struct sf_method_frame *frame, void *state, cons
     return SF_OK;
 }
 
-/* The list of tiles that smoke may touch, in order. */
-static void add_tiles(struct sf_method_frame *frame, struct sf_thick *thick)
+void sf_larsson_tiles(struct sf_method_frame *frame, struct sf_thick *thick)
 {
     const struct sf_use mark[] = {
         {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
@@ -182,6 +181,16 @@ static void add_over(struct sf_method_frame *frame, struct sf_thick *thick, cons
                                              .raster = {.blend = {SF_BLEND_PREMULTIPLIED}}});
 }
 
+void sf_larsson_over(struct sf_method_frame *frame, struct sf_thick *thick)
+{
+    if (thick->push.scale > 1) {
+        add_over(frame, thick, "larsson.over_plain", 1);
+        add_over(frame, thick, "larsson.over_cut", 2);
+    } else {
+        add_over(frame, thick, "larsson.over", 0);
+    }
+}
+
 static void add_aovs(struct sf_method_frame *frame, struct sf_thick *thick)
 {
     frame->aov_radiance = sf_thick_image(frame->graph, "aov.smoke", SF_FORMAT_RGBA16F, frame->width, frame->height);
@@ -217,7 +226,7 @@ enum sf_status sf_larsson_view(struct sf_method_frame *frame, void *state, const
     if (status)
         return status;
     thick->raw = sf_thick_image(graph, "camera.raw", SF_FORMAT_RGBA32F, width, height);
-    add_tiles(frame, thick);
+    sf_larsson_tiles(frame, thick);
     add_prepare(frame, thick);
     add_camera(frame, thick, "larsson.camera", false);
     add_camera(frame, thick, "larsson.camera_cut", true);
@@ -228,12 +237,7 @@ enum sf_status sf_larsson_view(struct sf_method_frame *frame, void *state, const
     static const char *const names[] = {"larsson.blur_x", "larsson.blur_y"};
     sf_thick_blur(frame, thick, names, images, true, &thick->camera_blur, radius);
     add_march(frame, thick);
-    if (thick->push.scale > 1) {
-        add_over(frame, thick, "larsson.over_plain", 1);
-        add_over(frame, thick, "larsson.over_cut", 2);
-    } else {
-        add_over(frame, thick, "larsson.over", 0);
-    }
+    sf_larsson_over(frame, thick);
     if (frame->want_aovs)
         add_aovs(frame, thick);
     return SF_OK;

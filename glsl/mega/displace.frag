@@ -1,0 +1,57 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+// The blurred balls, looked up at places that an animated noise has moved, and cut off by the scene (L 3.2). The noise is over the screen, as in the thesis, where it
+// stays when the smoke moves in the picture; or in the world, at the blurred surface, where it goes with the picture.
+#include "shared/frame.h"
+#include "shared/thick.h"
+#include "shared/mega.h"
+#include "lib/noise.glsl"
+
+layout(constant_id = 4) const uint ON_SCREEN = 0u;
+layout(constant_id = 5) const uint OCTAVES = 3u; // 0: no displacement
+layout(set = 0, binding = 0, std140) uniform Frame { sf_gpu_frame frame; };
+layout(set = 0, binding = 2) uniform sampler2D blurred;
+layout(set = 0, binding = 3) uniform sampler2D blurred_depth;
+layout(set = 0, binding = 4) uniform sampler2D scene_depth; // of the smoke's size
+layout(set = 0, binding = 5, std140) uniform Args { sf_thick_args args; };
+layout(push_constant) uniform Push { sf_thick_push push; sf_mega_push own; };
+layout(location = 0) flat in vec4 behind;
+layout(location = 0) out vec4 smoke;
+#include "thick/view.glsl"
+
+// Where coverage is thinner than this the depth goes over to that of the smoke's middle, so that the noise has a place on both sides of the outline.
+const float FAINT = 0.02;
+// Turns of the noise's corners for each unit of time, as those of turbulence (src/sim/feed.c): a quarter of a turn each.
+const vec4 SPEEDS = 1.57079633 * vec4(0.36, -0.71, 1.23, -1.4);
+
+// Pixels of the smoke's image.
+vec2 displacement(ivec2 pixel)
+{
+    float turn = own.speed * frame.forward.w;
+    vec3 noise;
+    if (ON_SCREEN != 0u) {
+        noise = sf_curl_noise_octaves(vec3(gl_FragCoord.xy * own.frequency, turn), frame.seed, OCTAVES, vec4(1.0), vec4(0.0));
+    } else {
+        vec3 ray = world_ray(smoke_ndc(vec2(pixel)));
+        float covered = texelFetch(blurred, pixel, 0).a;
+        float middle = distance(args.centre.xyz, frame.eye.xyz) * inversesqrt(dot(ray, ray));
+        float depth = (covered * texelFetch(blurred_depth, pixel, 0).r + FAINT * middle) / (covered + FAINT);
+        vec3 moved = sf_curl_noise_octaves((frame.eye.xyz + depth * ray) * own.frequency, frame.seed, OCTAVES, cos(turn * SPEEDS), sin(turn * SPEEDS));
+        noise = vec3(dot(moved, frame.right.xyz) / frame.right.w, -dot(moved, frame.up.xyz) / frame.up.w, 0.0);
+    }
+    vec2 offset = noise.xy * own.amplitude;
+    return offset * min(1.0, own.limit * inversesqrt(max(dot(offset, offset), 1e-12)));
+}
+
+void main()
+{
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec2 from = gl_FragCoord.xy;
+    if (OCTAVES > 0u)
+        from += displacement(pixel);
+    ivec2 limit = textureSize(blurred, 0) - 1;
+    float at = texelFetch(blurred_depth, clamp(ivec2(from), ivec2(0), limit), 0).r;
+    float ahead = texelFetch(scene_depth, min(pixel, limit), 0).r - at;
+    float share = own.soft > 0.0 ? clamp(ahead / own.soft, 0.0, 1.0) : (ahead > 0.0 ? 1.0 : 0.0);
+    smoke = textureLod(blurred, from / vec2(push.width, push.height), 0.0) * share;
+}
