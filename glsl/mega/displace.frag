@@ -13,14 +13,14 @@ layout(set = 0, binding = 0, std140) uniform Frame { sf_gpu_frame frame; };
 layout(set = 0, binding = 2) uniform sampler2D blurred;
 layout(set = 0, binding = 3) uniform sampler2D blurred_depth;
 layout(set = 0, binding = 4) uniform sampler2D scene_depth; // of the smoke's size
-layout(set = 0, binding = 5, std140) uniform Args { sf_thick_args args; };
 layout(push_constant) uniform Push { sf_thick_push push; sf_mega_push own; };
 layout(location = 0) flat in vec4 behind;
 layout(location = 0) out vec4 smoke;
 #include "thick/view.glsl"
 
-// Where coverage is thinner than this the depth goes over to that of the smoke's middle, so that the noise has a place on both sides of the outline.
+// At the rim, where coverage is thinner than this, the displacement fades out: beyond it there is no surface for the noise to be at.
 const float FAINT = 0.02;
+const float STEEP = 2.0; // depth over width of a surface from which on the displacement is shortened: noise would be torn into streaks
 // Turns of the noise's corners for each unit of time, as those of turbulence (src/sim/feed.c): a quarter of a turn each.
 const vec4 SPEEDS = 1.57079633 * vec4(0.36, -0.71, 1.23, -1.4);
 
@@ -28,19 +28,22 @@ const vec4 SPEEDS = 1.57079633 * vec4(0.36, -0.71, 1.23, -1.4);
 vec2 displacement(ivec2 pixel)
 {
     float turn = own.speed * frame.forward.w;
-    vec3 noise;
+    float covered = texelFetch(blurred, pixel, 0).a;
+    float share = smoothstep(0.0, FAINT, covered);
+    uint octaves = covered > 0.0 ? OCTAVES : 1u;
+    vec2 noise;
     if (ON_SCREEN != 0u) {
-        noise = sf_curl_noise_octaves(vec3(gl_FragCoord.xy * own.frequency, turn), frame.seed, OCTAVES, vec4(1.0), vec4(0.0));
+        noise = sf_curl_noise_octaves(vec3(gl_FragCoord.xy * own.frequency, turn), frame.seed, octaves, vec4(1.0), vec4(0.0)).xy;
     } else {
-        vec3 ray = world_ray(smoke_ndc(vec2(pixel)));
-        float covered = texelFetch(blurred, pixel, 0).a;
-        float middle = distance(args.centre.xyz, frame.eye.xyz) * inversesqrt(dot(ray, ray));
-        float depth = (covered * texelFetch(blurred_depth, pixel, 0).r + FAINT * middle) / (covered + FAINT);
-        vec3 moved = sf_curl_noise_octaves((frame.eye.xyz + depth * ray) * own.frequency, frame.seed, OCTAVES, cos(turn * SPEEDS), sin(turn * SPEEDS));
-        noise = vec3(dot(moved, frame.right.xyz) / frame.right.w, -dot(moved, frame.up.xyz) / frame.up.w, 0.0);
+        float depth = texelFetch(blurred_depth, pixel, 0).r;
+        float slope = max(abs(dFdx(depth)), abs(dFdy(depth))) * float(push.height);
+        share *= min(1.0, STEEP * 2.0 * frame.up.w * depth / max(slope, 1e-6));
+        vec3 at = frame.eye.xyz + depth * world_ray(smoke_ndc(vec2(pixel)));
+        vec3 moved = sf_curl_noise_octaves(at * own.frequency, frame.seed, octaves, cos(turn * SPEEDS), sin(turn * SPEEDS));
+        noise = vec2(dot(moved, frame.right.xyz) / frame.right.w, -dot(moved, frame.up.xyz) / frame.up.w);
     }
-    vec2 offset = noise.xy * own.amplitude;
-    return offset * min(1.0, own.limit * inversesqrt(max(dot(offset, offset), 1e-12)));
+    vec2 offset = noise * own.amplitude;
+    return offset * (share * min(1.0, own.limit * inversesqrt(max(dot(offset, offset), 1e-12))));
 }
 
 void main()

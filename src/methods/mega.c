@@ -38,14 +38,12 @@ void sf_mega_update(const struct sf_method_frame *frame, void *state)
     const struct sf_mega_settings *settings = &frame->scene->mega;
     float scale = (float)sf_thick_scale(frame->scene), born = radius_at_birth(frame->scene), power = 0;
     float sigma = settings->blur / scale, amplitude = settings->amplitude / scale;
-    float eddy = settings->scale > 0 ? settings->scale : born;
+    float eddy = settings->scale > 0 ? settings->scale : 2 * born;
 
     for (int i = 0; i < settings->octaves; i++)
         power += powf(4, -(float)i / 3); /* as sf_curl_noise_octaves weighs them */
     sf_larsson_update(frame, &mega->thick);
     mega->thick.push.reach = sf_thick_blur_radius(sigma);
-    if (settings->octaves > 0)
-        mega->thick.push.reach += (uint32_t)ceilf(LONGEST * amplitude);
     sf_thick_blur_weights(sigma, mega->thick.camera_blur.weight);
     mega->push.push = mega->thick.push;
     mega->push.own = (struct sf_mega_push){
@@ -86,13 +84,13 @@ static void add_pass(struct sf_method_frame *frame, const struct sf_mega *mega, 
     sf_graph_pass(frame->graph, &desc);
 }
 
-/* A pass over the tiles in the smoke's image; `constants` from id 4 on. */
+/* A pass over the tiles in the smoke's image; `constants` from id 4 on. What the upsampling reads beside the tiles was
+ * cleared: that is cheaper than tiles that overlap. */
 static void add_tile_pass(struct sf_method_frame *frame, const struct sf_mega *mega, const struct sf_use *uses,
                           uint32_t use_count, const uint32_t constants[2], struct sf_pass_desc desc)
 {
     desc.kind = SF_PASS_RASTER;
     desc.shader = "thick/tile.vert";
-    desc.constants[0] = 1; /* px wider: the upsampling reads them */
     desc.constants[2] = mega->thick.push.scale;
     desc.constants[4] = constants[0];
     desc.constants[5] = constants[1];
@@ -161,7 +159,11 @@ static void add_shade(struct sf_method_frame *frame, struct sf_mega *mega)
         {.resource = thick->args, .access = SF_ACCESS_STORAGE_READ, .binding = 7},
         {.resource = thick->mask, .access = SF_ACCESS_STORAGE_MODIFY, .binding = 8},
         {.resource = thick->raw, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_DISCARD},
-        {.resource = thick->smoke_depth, .access = SF_ACCESS_COLOR, .binding = 1, .load = SF_LOAD_DISCARD},
+        {.resource = thick->smoke_depth,
+         .access = SF_ACCESS_COLOR,
+         .binding = 1,
+         .load = SF_LOAD_CLEAR,
+         .clear = {SF_DEPTH_FAR}},
         {.resource = mega->blurred, .access = SF_ACCESS_COLOR, .binding = 2, .load = SF_LOAD_CLEAR},
         {.resource = mega->blurred_depth, .access = SF_ACCESS_COLOR, .binding = 3, .load = SF_LOAD_CLEAR},
     };
@@ -218,10 +220,9 @@ static void add_displace(struct sf_method_frame *frame, struct sf_mega *mega)
         {.resource = mega->blurred, .access = SF_ACCESS_SAMPLED, .binding = 2, .sampler = SF_SAMPLER_LINEAR},
         {.resource = mega->blurred_depth, .access = SF_ACCESS_SAMPLED, .binding = 3},
         {.resource = thick->smoke_depth, .access = SF_ACCESS_SAMPLED, .binding = 4},
-        {.resource = thick->args, .access = SF_ACCESS_UNIFORM, .binding = 5},
         {.resource = thick->args, .access = SF_ACCESS_STORAGE_READ, .binding = 7},
         {.resource = thick->mask, .access = SF_ACCESS_STORAGE_READ, .binding = 8},
-        {.resource = thick->smoke, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_DISCARD},
+        {.resource = thick->smoke, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_CLEAR},
     };
 
     add_tile_pass(frame, mega, uses, SF_COUNT(uses),

@@ -295,7 +295,7 @@ struct sf_mega_settings {
     float blur;         /* px: sigma */
     int32_t noise;      /* enum sf_mega_noise: what it is fixed to */
     float amplitude;    /* px: root mean square length of the displacement */
-    float scale;        /* m: of the world's noise; 0: the largest radius at birth */
+    float scale;        /* m: of the world's noise; 0: the largest diameter at birth */
     float screen_scale; /* frame heights: of the screen's noise */
     int32_t octaves;    /* of the noise; 0: no displacement */
     float speed;        /* 1/s: rate of its change */
