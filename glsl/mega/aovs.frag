@@ -8,13 +8,13 @@
 layout(constant_id = 2) const uint SCALE = 1u;
 layout(constant_id = 3) const uint CHOICE = 0u; // as in tile.vert
 layout(set = 0, binding = 2) uniform sampler2D smoke;
-layout(set = 0, binding = 3) uniform sampler2D smoke_depth;
+layout(set = 0, binding = 3) uniform sampler2D cut;
 layout(set = 0, binding = 4) uniform sampler2D scene_depth;
 layout(set = 0, binding = 5) uniform sampler2D extent;
 layout(location = 0) flat in vec4 behind;
 layout(location = 0) out vec4 radiance;
 layout(location = 1) out vec4 depths;
-#include "thick/upsample.glsl"
+#include "mega/upsample.glsl"
 
 void main()
 {

@@ -16,11 +16,12 @@ layout(set = 0, binding = 4) uniform sampler2D scene_depth; // of the smoke's si
 layout(push_constant) uniform Push { sf_thick_push push; sf_mega_push own; };
 layout(location = 0) flat in vec4 behind;
 layout(location = 0) out vec4 smoke;
+layout(location = 1) out float cut; // as mega/upsample.glsl reads it
 #include "thick/view.glsl"
 
 // At the rim, where coverage is thinner than this, the displacement fades out: beyond it there is no surface for the noise to be at.
 const float FAINT = 0.02;
-const float STEEP = 2.0; // depth over width of a surface from which on the displacement is shortened: noise would be torn into streaks
+const float STEEP = 3.0; // depth over width of a surface from which on the displacement is shortened: noise would be torn into streaks
 // Turns of the noise's corners for each unit of time, as those of turbulence (src/sim/feed.c): a quarter of a turn each.
 const vec4 SPEEDS = 1.57079633 * vec4(0.36, -0.71, 1.23, -1.4);
 
@@ -37,7 +38,8 @@ vec2 displacement(ivec2 pixel)
     } else {
         float depth = texelFetch(blurred_depth, pixel, 0).r;
         float slope = max(abs(dFdx(depth)), abs(dFdy(depth))) * float(push.height);
-        share *= min(1.0, STEEP * 2.0 * frame.up.w * depth / max(slope, 1e-6));
+        slope /= STEEP * 2.0 * frame.up.w * max(depth, 1e-6);
+        share /= 1.0 + slope * slope;
         vec3 at = frame.eye.xyz + depth * world_ray(smoke_ndc(vec2(pixel)));
         vec3 moved = sf_curl_noise_octaves(at * own.frequency, frame.seed, octaves, cos(turn * SPEEDS), sin(turn * SPEEDS));
         noise = vec2(dot(moved, frame.right.xyz) / frame.right.w, -dot(moved, frame.up.xyz) / frame.up.w);
@@ -54,7 +56,8 @@ void main()
         from += displacement(pixel);
     ivec2 limit = textureSize(blurred, 0) - 1;
     float at = texelFetch(blurred_depth, clamp(ivec2(from), ivec2(0), limit), 0).r;
-    float ahead = texelFetch(scene_depth, min(pixel, limit), 0).r - at;
+    float scene = texelFetch(scene_depth, pixel, 0).r, ahead = scene - at;
     float share = own.soft > 0.0 ? clamp(ahead / own.soft, 0.0, 1.0) : (ahead > 0.0 ? 1.0 : 0.0);
     smoke = textureLod(blurred, from / vec2(push.width, push.height), 0.0) * share;
+    cut = share < 1.0 ? scene : -max(at + own.soft, 1e-6);
 }

@@ -163,7 +163,8 @@ static void add_march(struct sf_method_frame *frame, struct sf_thick *thick)
 }
 
 /* `choice` as in tile.vert. */
-static void add_over(struct sf_method_frame *frame, struct sf_thick *thick, const char *name, uint32_t choice)
+static void add_over(struct sf_method_frame *frame, struct sf_thick *thick, const char *fragment, const char *name,
+                     uint32_t choice)
 {
     const struct sf_use uses[] = {
         {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
@@ -177,17 +178,17 @@ static void add_over(struct sf_method_frame *frame, struct sf_thick *thick, cons
     };
     sf_thick_tile_pass(frame, thick, uses, SF_COUNT(uses), true, choice,
                        (struct sf_pass_desc){.name = name,
-                                             .fragment = "larsson/over.frag",
+                                             .fragment = fragment,
                                              .raster = {.blend = {SF_BLEND_PREMULTIPLIED}}});
 }
 
-void sf_larsson_over(struct sf_method_frame *frame, struct sf_thick *thick)
+void sf_larsson_over(struct sf_method_frame *frame, struct sf_thick *thick, const char *fragment)
 {
     if (thick->push.scale > 1) {
-        add_over(frame, thick, "larsson.over_plain", 1);
-        add_over(frame, thick, "larsson.over_cut", 2);
+        add_over(frame, thick, fragment, "larsson.over_plain", 1);
+        add_over(frame, thick, fragment, "larsson.over_cut", 2);
     } else {
-        add_over(frame, thick, "larsson.over", 0);
+        add_over(frame, thick, fragment, "larsson.over", 0);
     }
 }
 
@@ -237,7 +238,7 @@ enum sf_status sf_larsson_view(struct sf_method_frame *frame, void *state, const
     static const char *const names[] = {"larsson.blur_x", "larsson.blur_y"};
     sf_thick_blur(frame, thick, names, images, true, &thick->camera_blur, radius);
     add_march(frame, thick);
-    sf_larsson_over(frame, thick);
+    sf_larsson_over(frame, thick, "larsson/over.frag");
     if (frame->want_aovs)
         add_aovs(frame, thick);
     return SF_OK;

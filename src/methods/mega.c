@@ -214,6 +214,8 @@ static void add_displace(struct sf_method_frame *frame, struct sf_mega *mega)
 {
     const struct sf_mega_settings *settings = &frame->scene->mega;
     struct sf_thick *thick = &mega->thick;
+    sf_resource cut =
+        sf_thick_image(frame->graph, "mega.cut", SF_FORMAT_R32F, thick->push.width, thick->push.height);
     const struct sf_use uses[] = {
         {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
         {.resource = thick->tiles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
@@ -223,11 +225,13 @@ static void add_displace(struct sf_method_frame *frame, struct sf_mega *mega)
         {.resource = thick->args, .access = SF_ACCESS_STORAGE_READ, .binding = 7},
         {.resource = thick->mask, .access = SF_ACCESS_STORAGE_READ, .binding = 8},
         {.resource = thick->smoke, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_CLEAR},
+        {.resource = cut, .access = SF_ACCESS_COLOR, .binding = 1, .load = SF_LOAD_CLEAR, .clear = {-SF_DEPTH_FAR}},
     };
 
     add_tile_pass(frame, mega, uses, SF_COUNT(uses),
                   (const uint32_t[]){settings->noise == SF_MEGA_SCREEN, (uint32_t)settings->octaves},
                   (struct sf_pass_desc){.name = "mega.displace", .fragment = "mega/displace.frag"});
+    thick->smoke_depth = cut; /* what the upsampling reads in its place */
 }
 
 static void add_aovs(struct sf_method_frame *frame, struct sf_mega *mega)
@@ -287,7 +291,7 @@ enum sf_status sf_mega_view(struct sf_method_frame *frame, void *state, const st
     add_shade(frame, mega);
     add_blur(frame, mega);
     add_displace(frame, mega);
-    sf_larsson_over(frame, &mega->thick);
+    sf_larsson_over(frame, &mega->thick, "mega/over.frag");
     if (frame->want_aovs)
         add_aovs(frame, mega);
     return SF_OK;
