@@ -176,10 +176,9 @@ static void add_over(struct sf_method_frame *frame, struct sf_thick *thick, cons
         {.resource = thick->mask, .access = SF_ACCESS_STORAGE_READ, .binding = 8},
         {.resource = frame->color, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_KEEP},
     };
-    sf_thick_tile_pass(frame, thick, uses, SF_COUNT(uses), true, choice,
-                       (struct sf_pass_desc){.name = name,
-                                             .fragment = fragment,
-                                             .raster = {.blend = {SF_BLEND_PREMULTIPLIED}}});
+    sf_thick_tile_pass(
+        frame, thick, uses, SF_COUNT(uses), true, choice,
+        (struct sf_pass_desc){.name = name, .fragment = fragment, .raster = {.blend = {SF_BLEND_PREMULTIPLIED}}});
 }
 
 void sf_larsson_over(struct sf_method_frame *frame, struct sf_thick *thick, const char *fragment)

@@ -50,9 +50,8 @@ void sf_mega_update(const struct sf_method_frame *frame, void *state)
         /* Two of the noise's three coordinates, whose squares sum to 1 in the mean. */
         .amplitude = settings->octaves > 0 ? amplitude * sqrtf(1.5f / power) : 0,
         .limit = LONGEST * amplitude,
-        .frequency = settings->noise == SF_MEGA_WORLD
-                         ? 1 / eddy
-                         : scale / (settings->screen_scale * (float)frame->height),
+        .frequency =
+            settings->noise == SF_MEGA_WORLD ? 1 / eddy : scale / (settings->screen_scale * (float)frame->height),
         .speed = settings->speed,
         .soft = settings->soft > 0 ? settings->soft : born,
         .diffuse = settings->diffuse,
@@ -106,8 +105,8 @@ static void add_balls(struct sf_method_frame *frame, struct sf_mega *mega)
 {
     uint32_t width = mega->thick.push.width, height = mega->thick.push.height;
 
-    mega->balls = sf_thick_buffer(frame->graph, "mega.balls",
-                                  (uint64_t)frame->scene->sim.capacity * sizeof(struct sf_mega_ball));
+    mega->balls =
+        sf_thick_buffer(frame->graph, "mega.balls", (uint64_t)frame->scene->sim.capacity * sizeof(struct sf_mega_ball));
     const struct sf_use make[] = {
         {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
         {.resource = frame->particles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
@@ -193,20 +192,19 @@ static void add_blur(struct sf_method_frame *frame, struct sf_mega *mega)
             {.resource = thick->tiles, .access = SF_ACCESS_STORAGE_READ, .binding = 4},
             {.resource = thick->mask, .access = SF_ACCESS_STORAGE_READ, .binding = 5},
         };
-        sf_graph_pass(
-            frame->graph,
-            &(struct sf_pass_desc){.name = names[vertical],
-                                   .kind = SF_PASS_COMPUTE,
-                                   .shader = "mega/blur.comp",
-                                   .uses = uses,
-                                   .use_count = SF_COUNT(uses),
-                                   .constants = {vertical, sf_thick_blur_radius(frame->scene->mega.blur /
-                                                                                (float)thick->push.scale)},
-                                   .constant_count = 2,
-                                   .push = &thick->camera_blur,
-                                   .push_bytes = sizeof thick->camera_blur,
-                                   .indirect = thick->args,
-                                   .indirect_offset = SF_THICK_DISPATCH_TILES_OFFSET});
+        sf_graph_pass(frame->graph,
+                      &(struct sf_pass_desc){.name = names[vertical],
+                                             .kind = SF_PASS_COMPUTE,
+                                             .shader = "mega/blur.comp",
+                                             .uses = uses,
+                                             .use_count = SF_COUNT(uses),
+                                             .constants = {vertical, sf_thick_blur_radius(frame->scene->mega.blur /
+                                                                                          (float)thick->push.scale)},
+                                             .constant_count = 2,
+                                             .push = &thick->camera_blur,
+                                             .push_bytes = sizeof thick->camera_blur,
+                                             .indirect = thick->args,
+                                             .indirect_offset = SF_THICK_DISPATCH_TILES_OFFSET});
     }
 }
 
@@ -214,8 +212,7 @@ static void add_displace(struct sf_method_frame *frame, struct sf_mega *mega)
 {
     const struct sf_mega_settings *settings = &frame->scene->mega;
     struct sf_thick *thick = &mega->thick;
-    sf_resource cut =
-        sf_thick_image(frame->graph, "mega.cut", SF_FORMAT_R32F, thick->push.width, thick->push.height);
+    sf_resource cut = sf_thick_image(frame->graph, "mega.cut", SF_FORMAT_R32F, thick->push.width, thick->push.height);
     const struct sf_use uses[] = {
         {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
         {.resource = thick->tiles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},

@@ -74,7 +74,8 @@ const struct sf_method_row sf_methods[] = {
     [SF_METHOD_MEGA] =
         {
             .name = "mega",
-            .doc = "mega particles: Phong-lit balls, blurred, displaced by a noise that stays in the world (METHODS B8)",
+            .doc =
+                "mega particles: Phong-lit balls, blurred, displaced by a noise that stays in the world (METHODS B8)",
             .light = sf_mega_light,
             .view = sf_mega_view,
             .update = sf_mega_update,

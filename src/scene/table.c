@@ -225,9 +225,10 @@ static const struct sf_param mega_rows[] = {
     {ROW_FLOAT("blur", struct sf_mega_settings, blur, 6, 0, 38, "px",
                "sigma of the blur of the balls, in pixels of the frame"),
      .rebuild = SF_REBUILD_GRAPH},
-    {ROW_ENUM("noise", struct sf_mega_settings, noise, mega_noises, SF_MEGA_WORLD,
-              "where the noise is fixed: in the world, or on the screen as in the thesis, where smoke that moves slides "
-              "under it"),
+    {ROW_ENUM(
+         "noise", struct sf_mega_settings, noise, mega_noises, SF_MEGA_WORLD,
+         "where the noise is fixed: in the world, or on the screen as in the thesis, where smoke that moves slides "
+         "under it"),
      .rebuild = SF_REBUILD_GRAPH},
     {ROW_FLOAT("amplitude", struct sf_mega_settings, amplitude, 7, 0, 100, "px",
                "root mean square of the displacement, in pixels of the frame")},
