@@ -32,26 +32,31 @@ static float radius_at_birth(const struct sf_scene *scene)
     return largest > 0 ? largest : 1;
 }
 
+/* Sigma of the blur, in pixels of the smoke's image. */
+static float blur_sigma(const struct sf_method_frame *frame)
+{
+    return frame->scene->mega.blur * (float)frame->height / (float)sf_thick_scale(frame->scene);
+}
+
 void sf_mega_update(const struct sf_method_frame *frame, void *state)
 {
     struct sf_mega *mega = state;
     const struct sf_mega_settings *settings = &frame->scene->mega;
-    float scale = (float)sf_thick_scale(frame->scene), born = radius_at_birth(frame->scene), power = 0;
-    float sigma = settings->blur / scale, amplitude = settings->amplitude / scale;
+    float height = (float)frame->height / (float)sf_thick_scale(frame->scene), power = 0;
+    float born = radius_at_birth(frame->scene), amplitude = settings->amplitude * height;
     float eddy = settings->scale > 0 ? settings->scale : 2 * born;
 
     for (int i = 0; i < settings->octaves; i++)
         power += powf(4, -(float)i / 3); /* as sf_curl_noise_octaves weighs them */
     sf_larsson_update(frame, &mega->thick);
-    mega->thick.push.reach = sf_thick_blur_radius(sigma);
-    sf_thick_blur_weights(sigma, mega->thick.camera_blur.weight);
+    mega->thick.push.reach = sf_thick_blur_radius(blur_sigma(frame));
+    sf_thick_blur_weights(blur_sigma(frame), mega->thick.camera_blur.weight);
     mega->push.push = mega->thick.push;
     mega->push.own = (struct sf_mega_push){
         /* Two of the noise's three coordinates, whose squares sum to 1 in the mean. */
         .amplitude = settings->octaves > 0 ? amplitude * sqrtf(1.5f / power) : 0,
         .limit = LONGEST * amplitude,
-        .frequency =
-            settings->noise == SF_MEGA_WORLD ? 1 / eddy : scale / (settings->screen_scale * (float)frame->height),
+        .frequency = settings->noise == SF_MEGA_WORLD ? 1 / eddy : 1 / (settings->screen_scale * height),
         .speed = settings->speed,
         .soft = settings->soft > 0 ? settings->soft : born,
         .diffuse = settings->diffuse,
@@ -198,8 +203,7 @@ static void add_blur(struct sf_method_frame *frame, struct sf_mega *mega)
                                              .shader = "mega/blur.comp",
                                              .uses = uses,
                                              .use_count = SF_COUNT(uses),
-                                             .constants = {vertical, sf_thick_blur_radius(frame->scene->mega.blur /
-                                                                                          (float)thick->push.scale)},
+                                             .constants = {vertical, sf_thick_blur_radius(blur_sigma(frame))},
                                              .constant_count = 2,
                                              .push = &thick->camera_blur,
                                              .push_bytes = sizeof thick->camera_blur,

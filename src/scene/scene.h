@@ -289,12 +289,13 @@ struct sf_soft_settings {
     float power;    /* of soft-contrast */
 };
 
-/* Lengths in px are of the full frame. Beside these, thick's resolution, ambient and shadows. */
+/* What is in the picture is in heights of the frame, so that it looks the same at any size. Beside these, thick's
+ * resolution, ambient and shadows. */
 enum sf_mega_noise { SF_MEGA_WORLD, SF_MEGA_SCREEN };
 struct sf_mega_settings {
-    float blur;         /* px: sigma */
+    float blur;         /* frame heights: sigma */
     int32_t noise;      /* enum sf_mega_noise: what it is fixed to */
-    float amplitude;    /* px: root mean square length of the displacement */
+    float amplitude;    /* frame heights: root mean square length of the displacement */
     float scale;        /* m: of the world's noise; 0: the largest diameter at birth */
     float screen_scale; /* frame heights: of the screen's noise */
     int32_t octaves;    /* of the noise; 0: no displacement */

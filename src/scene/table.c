@@ -222,16 +222,16 @@ static const struct sf_param_group soft_group =
 
 static const char *const mega_noises[] = {"world", "screen", NULL};
 static const struct sf_param mega_rows[] = {
-    {ROW_FLOAT("blur", struct sf_mega_settings, blur, 6, 0, 38, "px",
-               "sigma of the blur of the balls, in pixels of the frame"),
+    {ROW_FLOAT("blur", struct sf_mega_settings, blur, 0.016, 0, 0.2, "frame heights",
+               "sigma of the blur of the balls; it reaches 24 pixels of the smoke's image at most"),
      .rebuild = SF_REBUILD_GRAPH},
     {ROW_ENUM(
          "noise", struct sf_mega_settings, noise, mega_noises, SF_MEGA_WORLD,
          "where the noise is fixed: in the world, or on the screen as in the thesis, where smoke that moves slides "
          "under it"),
      .rebuild = SF_REBUILD_GRAPH},
-    {ROW_FLOAT("amplitude", struct sf_mega_settings, amplitude, 7, 0, 100, "px",
-               "root mean square of the displacement, in pixels of the frame")},
+    {ROW_FLOAT("amplitude", struct sf_mega_settings, amplitude, 0.02, 0, 0.5, "frame heights",
+               "root mean square of the displacement by the noise")},
     {ROW_FLOAT("scale", struct sf_mega_settings, scale, 0, 0, 1000, "m",
                "of the world's noise; 0: the largest diameter that particles are born with")},
     {ROW_FLOAT("screen_scale", struct sf_mega_settings, screen_scale, 0.1, 0.001, 10, "frame heights",
