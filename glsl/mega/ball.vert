@@ -21,8 +21,10 @@ void main()
     vec3 c = to_view(ball.sphere.xyz);
     float r = ball.sphere.w;
     vec2 tangent = vec2(frame.right.w, frame.up.w);
-    vec2 x = clamp(circle_range(c.x, c.z, r, 1e4), -1.02 * tangent.x, 1.02 * tangent.x);
-    vec2 y = clamp(circle_range(c.y, c.z, r, 1e4), -1.02 * tangent.y, 1.02 * tangent.y);
+    // As far as the smoke's image, whose last row and column may reach beyond the frame.
+    vec2 reach = tangent * (1.0 + 2.0 * float(push.scale) * frame.size.zw);
+    vec2 x = clamp(circle_range(c.x, c.z, r, 1e4), -reach.x, reach.x);
+    vec2 y = clamp(circle_range(c.y, c.z, r, 1e4), -reach.y, reach.y);
     ray = vec2((gl_VertexIndex & 1) != 0 ? x.y : x.x, (gl_VertexIndex & 2) != 0 ? y.y : y.x);
     sphere = vec4(c, r);
     own = vec2(frame.eye.w, gl_InstanceIndex);

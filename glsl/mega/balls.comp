@@ -31,12 +31,12 @@ void main()
     sf_particle p = particles[index];
     vec3 centre = vec3(p.x, p.y, p.z);
     float radius = p.extinction > 0.0 ? p.radius * share_of_radius(2.0 * p.radius * p.extinction) : 0.0;
-    // No ball reaches the near plane: it shrinks as the eye comes to it, and is nothing when its centre gets there.
+    // A ball that the eye comes to shrinks, so that it is seen under an angle of 45 degrees at most, and of none when its centre gets to the near plane.
     float before = dot(centre - frame.eye.xyz, frame.forward.xyz) - frame.eye.w;
     vec3 albedo = frame.albedo.rgb;
     float age = p.lifetime > 0.0 ? clamp(p.age / p.lifetime, 0.0, 1.0) : 0.0;
     if (RAMP != 0u)
         albedo *= frame.ramp[int(age * float(SF_FRAME_RAMP - 1) + 0.5)].rgb;
-    balls[index].sphere = vec4(centre, clamp(min(radius, before), 0.0, radius));
+    balls[index].sphere = vec4(centre, min(radius, before > 0.0 && radius > 0.0 ? 0.5 * before * before / radius : 0.0));
     balls[index].albedo = vec4(albedo, 0.0);
 }

@@ -17,14 +17,15 @@ layout(set = 0, binding = 5, std430) readonly buffer Mask { uint mask[]; };
 layout(push_constant) uniform Push { sf_thick_blur_push push; };
 
 const int RUN = 8; // pixels a thread makes
-ivec2 axis, lowest, highest;
+ivec2 axis, lowest, highest, border;
 
 // The next tap: colour and coverage; and depth times coverage.
 void fetch(inout ivec2 at, out vec4 value, out float depth)
 {
-    ivec2 place = clamp(at, lowest, highest);
+    // Beyond the image's border smoke goes on as it is there.
+    ivec2 wanted = clamp(at, ivec2(0), border), place = clamp(wanted, lowest, highest);
     value = texelFetch(source, place, 0);
-    float inside = at == place ? 1.0 : 0.0;
+    float inside = wanted == place ? 1.0 : 0.0;
     if (VERTICAL == 0u) {
         float here = value.a < SF_DEPTH_FAR ? inside : 0.0;
         depth = value.a * here;
@@ -62,7 +63,8 @@ void main()
     int after = place + 1 < count && mask[tile + step] != 0u ? 1 : 0;
     after += after == 1 && place + 2 < count && mask[tile + 2 * step] != 0u ? 1 : 0;
     lowest = corner - before * SF_THICK_TILE * axis;
-    highest = min(corner + SF_THICK_TILE + after * SF_THICK_TILE * axis, ivec2(push.width, push.height)) - 1;
+    border = ivec2(push.width, push.height) - 1;
+    highest = min(corner + SF_THICK_TILE + after * SF_THICK_TILE * axis - 1, border);
     ivec2 start = corner + int(gl_LocalInvocationID.x) * (1 - axis) + int(gl_LocalInvocationID.y) * RUN * axis;
     if (any(greaterThanEqual(start, ivec2(push.width, push.height))))
         return;

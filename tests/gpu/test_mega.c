@@ -142,6 +142,32 @@ static void test_laid_over_the_scene(void **state)
     }
 }
 
+/* Smoke that fills the frame does so up to its border, blurred and displaced. */
+static void test_border(void **state)
+{
+    static const char *const resolutions[] = {"full", "half", "quarter"};
+
+    (void)state;
+    for (size_t i = 0; i < 3; i++) {
+        static const char json[] = SCENE STILL "[{\"centre\":[0,0,-8],\"radius\":9,\"extinction\":1e4}]}]}";
+        struct sf_scene *scene = NULL;
+        char set[64];
+        const char *const sets[] = {set};
+        snprintf(set, sizeof set, "thick.resolution=%s", resolutions[i]);
+        if (sf_scene_parse("test", json, strlen(json), sets, 1, &kit_log, &scene) != SF_OK)
+            fail_msg("%s", kit_message);
+        struct stage stage = stage_with(scene, SIDE, SIDE);
+        struct picture picture = stage_draw(&stage, 0);
+        stage_end(&stage);
+        double least = 1;
+        for (size_t k = 0; k < (size_t)SIDE * SIDE; k++)
+            least = fmin(least, (double)picture.smoke[k][3]);
+        printf("  %s: opacity %.4f at least\n", resolutions[i], least);
+        assert_true(least > 0.998); /* half floats */
+        picture_free(&picture);
+    }
+}
+
 /* ---- particles that die ---- */
 
 static void test_deaths(void **state)
@@ -175,6 +201,33 @@ static void test_deaths(void **state)
     assert_int_equal(live, 0);
     assert_true(steps > 5 && last < 0.02);
     assert_true(deaths < 1.2 * middle_life);
+}
+
+/* The eye flies through a ball: what it covers of the picture changes little from step to step. */
+static void test_flight(void **state)
+{
+    struct stage stage = stage_of_text(SCENE BARE STILL DENSE "}", SIDE, SIDE);
+    double before = 0, jump = 0, most = 0;
+
+    (void)state;
+    for (int step = 0; step <= 64; step++) {
+        float z = 2.6f - 0.05f * (float)step;
+        const struct sf_camera_view view = {
+            .eye = {0, 0, z}, .target = {0, 0, z - 1}, .up = {0, 1, 0}, .fov = 40, .near_clip = 0.05f};
+        sf_renderer_set_view(stage.renderer, &view);
+        struct picture picture = stage_draw(&stage, 0);
+        double covered = 0;
+        for (size_t i = 0; i < (size_t)SIDE * SIDE; i++)
+            covered += (double)picture.smoke[i][3] / (SIDE * SIDE);
+        picture_free(&picture);
+        jump = step > 0 ? fmax(jump, fabs(covered - before)) : 0;
+        most = fmax(most, covered);
+        before = covered;
+    }
+    stage_end(&stage);
+    printf("  covered: %.3f at most, %.3f at the end; largest change in a step of a twentieth of the radius: %.3f\n",
+           most, before, jump);
+    assert_true(most > 0.99 && before <= 0 && jump < 0.2);
 }
 
 /* ---- the shower door ---- */
@@ -281,7 +334,8 @@ int main(void)
         cmocka_unit_test(test_light_of_a_ball), cmocka_unit_test(test_size_of_a_ball),
         cmocka_unit_test(test_scene_hides),     cmocka_unit_test(test_laid_over_the_scene),
         cmocka_unit_test(test_deaths),          cmocka_unit_test(test_shower_door),
-        cmocka_unit_test(test_same_bits),
+        cmocka_unit_test(test_same_bits),       cmocka_unit_test(test_flight),
+        cmocka_unit_test(test_border),
     };
     return cmocka_run_group_tests(tests, kit_setup, kit_teardown);
 }
