@@ -69,8 +69,7 @@ enum sf_status sf_larsson_light(struct sf_method_frame *frame, void *state, cons
     return SF_OK;
 }
 
-/* The list of tiles that smoke may touch, in order. */
-static void add_tiles(struct sf_method_frame *frame, struct sf_thick *thick)
+void sf_larsson_tiles(struct sf_method_frame *frame, struct sf_thick *thick)
 {
     const struct sf_use mark[] = {
         {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
@@ -170,7 +169,8 @@ static void add_march(struct sf_method_frame *frame, struct sf_thick *thick)
 }
 
 /* `choice` as in tile.vert. */
-static void add_over(struct sf_method_frame *frame, struct sf_thick *thick, const char *name, uint32_t choice)
+static void add_over(struct sf_method_frame *frame, struct sf_thick *thick, const char *fragment, const char *name,
+                     uint32_t choice)
 {
     const struct sf_use uses[] = {
         {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
@@ -182,10 +182,19 @@ static void add_over(struct sf_method_frame *frame, struct sf_thick *thick, cons
         {.resource = thick->mask, .access = SF_ACCESS_STORAGE_READ, .binding = 8},
         {.resource = frame->color, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_KEEP},
     };
-    sf_thick_tile_pass(frame, thick, uses, SF_COUNT(uses), true, choice,
-                       (struct sf_pass_desc){.name = name,
-                                             .fragment = "larsson/over.frag",
-                                             .raster = {.blend = {SF_BLEND_PREMULTIPLIED}}});
+    sf_thick_tile_pass(
+        frame, thick, uses, SF_COUNT(uses), true, choice,
+        (struct sf_pass_desc){.name = name, .fragment = fragment, .raster = {.blend = {SF_BLEND_PREMULTIPLIED}}});
+}
+
+void sf_larsson_over(struct sf_method_frame *frame, struct sf_thick *thick, const char *fragment)
+{
+    if (thick->push.scale > 1) {
+        add_over(frame, thick, fragment, "larsson.over_plain", 1);
+        add_over(frame, thick, fragment, "larsson.over_cut", 2);
+    } else {
+        add_over(frame, thick, fragment, "larsson.over", 0);
+    }
 }
 
 static void add_aovs(struct sf_method_frame *frame, struct sf_thick *thick)
@@ -223,7 +232,7 @@ enum sf_status sf_larsson_view(struct sf_method_frame *frame, void *state, const
     if (status)
         return status;
     thick->raw = sf_thick_image(graph, "camera.raw", SF_FORMAT_RGBA32F, width, height);
-    add_tiles(frame, thick);
+    sf_larsson_tiles(frame, thick);
     add_prepare(frame, thick);
     add_camera(frame, thick, "larsson.camera", false);
     add_camera(frame, thick, "larsson.camera_cut", true);
@@ -234,12 +243,7 @@ enum sf_status sf_larsson_view(struct sf_method_frame *frame, void *state, const
     static const char *const names[] = {"larsson.blur_x", "larsson.blur_y"};
     sf_thick_blur(frame, thick, names, images, true, &thick->camera_blur, radius);
     add_march(frame, thick);
-    if (thick->push.scale > 1) {
-        add_over(frame, thick, "larsson.over_plain", 1);
-        add_over(frame, thick, "larsson.over_cut", 2);
-    } else {
-        add_over(frame, thick, "larsson.over", 0);
-    }
+    sf_larsson_over(frame, thick, "larsson/over.frag");
     if (frame->want_aovs)
         add_aovs(frame, thick);
     return SF_OK;

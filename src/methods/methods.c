@@ -1,6 +1,7 @@
 #include "methods/method.h"
 #include "methods/billboard.h"
 #include "methods/larsson.h"
+#include "methods/mega.h"
 #include "methods/reference.h"
 #include "methods/sprites.h"
 #include "methods/thick.h"
@@ -70,5 +71,19 @@ const struct sf_method_row sf_methods[] = {
         BILLBOARDS("soft-contrast", "the same with a fade that is steep in its middle (METHODS B3)", sf_contrast_view),
     [SF_METHOD_SPHERICAL] = BILLBOARDS(
         "spherical", "spheres, denser in the middle, cut off by scene and near plane (METHODS B4)", sf_spherical_view),
+    [SF_METHOD_MEGA] =
+        {
+            .name = "mega",
+            .doc =
+                "mega particles: Phong-lit balls, blurred, displaced by a noise that stays in the world (METHODS B8)",
+            .light = sf_mega_light,
+            .view = sf_mega_view,
+            .update = sf_mega_update,
+            .state_bytes = sizeof(struct sf_mega),
+            .create_assets = sf_thick_assets_create,
+            .destroy_assets = sf_thick_assets_destroy,
+            .same_assets = sf_thick_assets_same,
+            .bind_assets = sf_thick_assets_bind,
+        },
 };
 const uint32_t sf_method_count = sizeof sf_methods / sizeof sf_methods[0];

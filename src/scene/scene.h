@@ -250,6 +250,7 @@ enum sf_method {
     SF_METHOD_SOFT,
     SF_METHOD_CONTRAST,
     SF_METHOD_SPHERICAL,
+    SF_METHOD_MEGA,
 };
 enum sf_resolution { SF_RESOLUTION_FULL, SF_RESOLUTION_HALF, SF_RESOLUTION_QUARTER };
 enum sf_thick_placement { SF_PLACEMENT_EQUAL, SF_PLACEMENT_UNIFORM, SF_PLACEMENT_JITTERED };
@@ -317,6 +318,23 @@ struct sf_soft_settings {
     float power;    /* of soft-contrast */
 };
 
+/* What is in the picture is in heights of the frame, so that it looks the same at any size. Beside these, thick's
+ * resolution, ambient and shadows. */
+enum sf_mega_noise { SF_MEGA_WORLD, SF_MEGA_SCREEN };
+struct sf_mega_settings {
+    float blur;         /* frame heights: sigma */
+    int32_t noise;      /* enum sf_mega_noise: what it is fixed to */
+    float amplitude;    /* frame heights: root mean square length of the displacement */
+    float scale;        /* m: of the world's noise; 0: the largest diameter at birth */
+    float screen_scale; /* frame heights: of the screen's noise */
+    int32_t octaves;    /* of the noise; 0: no displacement */
+    float speed;        /* 1/s: rate of its change */
+    float diffuse;      /* times the medium's albedo */
+    float specular;     /* share of light in the lobe */
+    float shininess;    /* exponent of the lobe */
+    float soft;         /* m before the scene in which smoke fades; 0: the largest radius at birth */
+};
+
 struct sf_scene {
     const char *path; /* where it came from */
     uint64_t hash;    /* of the canonical JSON after --set, plus the bytes of the files that it names */
@@ -352,6 +370,7 @@ struct sf_scene {
     struct sf_reference_settings reference;
     struct sf_billboard_settings billboard;
     struct sf_soft_settings soft;
+    struct sf_mega_settings mega;
     /* The values as they were given, before directions are normalised, emitters take the medium's extinction, and files
      * are read: what controls show. NULL in a scene that was not loaded. */
     const struct sf_scene *stated;

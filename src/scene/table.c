@@ -220,11 +220,43 @@ static const struct sf_param soft_rows[] = {
 static const struct sf_param_group soft_group =
     GROUP("soft", struct sf_soft_settings, soft_rows, "The methods soft and soft-contrast.");
 
+static const char *const mega_noises[] = {"world", "screen", NULL};
+static const struct sf_param mega_rows[] = {
+    {ROW_FLOAT("blur", struct sf_mega_settings, blur, 0.016, 0, 0.2, "frame heights",
+               "sigma of the blur of the balls; it reaches 24 pixels of the smoke's image at most"),
+     .rebuild = SF_REBUILD_GRAPH},
+    {ROW_ENUM(
+         "noise", struct sf_mega_settings, noise, mega_noises, SF_MEGA_WORLD,
+         "where the noise is fixed: in the world, or on the screen as in the thesis, where smoke that moves slides "
+         "under it"),
+     .rebuild = SF_REBUILD_GRAPH},
+    {ROW_FLOAT("amplitude", struct sf_mega_settings, amplitude, 0.02, 0, 0.5, "frame heights",
+               "root mean square of the displacement by the noise")},
+    {ROW_FLOAT("scale", struct sf_mega_settings, scale, 0, 0, 1000, "m",
+               "of the world's noise; 0: the largest diameter that particles are born with")},
+    {ROW_FLOAT("screen_scale", struct sf_mega_settings, screen_scale, 0.1, 0.001, 10, "frame heights",
+               "of the screen's noise")},
+    {ROW_INT("octaves", struct sf_mega_settings, octaves, 3, 0, 6, "", "of the noise; 0: no displacement"),
+     .rebuild = SF_REBUILD_GRAPH},
+    {ROW_FLOAT("speed", struct sf_mega_settings, speed, 0.5, 0, 100, "1/s", "of the noise's change")},
+    {ROW_FLOAT("diffuse", struct sf_mega_settings, diffuse, 1, 0, 100, "",
+               "multiplies the medium's albedo in the light that the balls reflect diffusely")},
+    {ROW_FLOAT("specular", struct sf_mega_settings, specular, 0.05, 0, 1, "",
+               "share of light that Phong's highlight reflects")},
+    {ROW_FLOAT("shininess", struct sf_mega_settings, shininess, 4, 1, 1000, "",
+               "exponent of the highlight: larger is smaller and brighter")},
+    {ROW_FLOAT("soft", struct sf_mega_settings, soft, 0, 0, 1000, "m",
+               "before the scene, in which the smoke fades; 0: the largest radius that particles are born with")},
+};
+static const struct sf_param_group mega_group =
+    GROUP("mega", struct sf_mega_settings, mega_rows,
+          "The method mega; it reads resolution, ambient, scene_shadow and ground_shadow of thick, too.");
+
 #define ROW_OBJECT(k, f, of, text)                                                                                     \
     .key = k, .type = SF_PARAM_OBJECT, .offset = offsetof(struct sf_scene, f), .group = &of, .unit = "", .doc = text
 
 static const char *const methods[] = {"none", "thick",         "thick-larsson", "reference", "hard",
-                                      "soft", "soft-contrast", "spherical",     NULL};
+                                      "soft", "soft-contrast", "spherical",     "mega",      NULL};
 static const struct sf_param scene_rows[] = {
     {ROW_OBJECT("camera", camera, sf_scene_camera_group, "the eye")},
     {ROW_LIST("lights", struct sf_scene, lights, light_count, sf_scene_light_group, 0, SF_LIGHTS_MAX, "lamps")},
@@ -253,6 +285,7 @@ static const struct sf_param scene_rows[] = {
     {ROW_OBJECT("reference", reference, reference_group, "the method reference")},
     {ROW_OBJECT("billboard", billboard, billboard_group, "the methods of billboards")},
     {ROW_OBJECT("soft", soft, soft_group, "the methods soft and soft-contrast")},
+    {ROW_OBJECT("mega", mega, mega_group, "the method mega")},
 };
 const struct sf_param_group sf_scene_group =
     GROUP("scene", struct sf_scene, scene_rows, "The outermost object of a scene file.");
