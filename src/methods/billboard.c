@@ -12,8 +12,20 @@ _Static_assert(offsetof(struct sf_billboards, thick) == 0, "the state of the lig
 /* The method's settings, as its shader has them. */
 static void fill_own(const struct sf_scene *scene, float own[4])
 {
-    own[0] = scene->soft.distance;
-    own[1] = scene->soft.power;
+    switch ((enum sf_method)scene->method) {
+    case SF_METHOD_SOFT:
+    case SF_METHOD_CONTRAST:
+        own[0] = scene->soft.distance;
+        own[1] = scene->soft.power;
+        break;
+    case SF_METHOD_AVERAGE:
+        own[0] = scene->average.depth;
+        own[1] = scene->average.plane;
+        own[2] = scene->average.opacity;
+        break;
+    default:
+        break;
+    }
 }
 
 void sf_billboard_update(const struct sf_method_frame *frame, void *state)

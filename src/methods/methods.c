@@ -70,5 +70,7 @@ const struct sf_method_row sf_methods[] = {
         BILLBOARDS("soft-contrast", "the same with a fade that is steep in its middle (METHODS B3)", sf_contrast_view),
     [SF_METHOD_SPHERICAL] = BILLBOARDS(
         "spherical", "spheres, denser in the middle, cut off by scene and near plane (METHODS B4)", sf_spherical_view),
+    [SF_METHOD_AVERAGE] = BILLBOARDS(
+        "average-density", "slabs of even density, cut off by scene and near plane (METHODS B5)", sf_average_view),
 };
 const uint32_t sf_method_count = sizeof sf_methods / sizeof sf_methods[0];

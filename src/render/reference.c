@@ -39,6 +39,7 @@ static const char *foreign_medium(int32_t method)
     case SF_METHOD_SOFT:
     case SF_METHOD_CONTRAST:
     case SF_METHOD_SPHERICAL:
+    case SF_METHOD_AVERAGE:
         return NULL;
     }
     return "a medium of its own";

@@ -221,6 +221,7 @@ enum sf_method {
     SF_METHOD_SOFT,
     SF_METHOD_CONTRAST,
     SF_METHOD_SPHERICAL,
+    SF_METHOD_AVERAGE,
 };
 enum sf_resolution { SF_RESOLUTION_FULL, SF_RESOLUTION_HALF, SF_RESOLUTION_QUARTER };
 enum sf_thick_placement { SF_PLACEMENT_EQUAL, SF_PLACEMENT_UNIFORM, SF_PLACEMENT_JITTERED };
@@ -287,6 +288,11 @@ struct sf_soft_settings {
     float distance; /* m of the fade; 0: the particle's radius */
     float power;    /* of soft-contrast */
 };
+struct sf_average_settings {
+    float depth;   /* radii: of the volume, D */
+    float plane;   /* share of it before the particle's centre */
+    float opacity; /* V */
+};
 
 struct sf_scene {
     const char *path; /* where it came from */
@@ -316,6 +322,7 @@ struct sf_scene {
     struct sf_reference_settings reference;
     struct sf_billboard_settings billboard;
     struct sf_soft_settings soft;
+    struct sf_average_settings average;
     /* The values as they were given, before directions are normalised, emitters take the medium's extinction, and files
      * are read: what controls show. NULL in a scene that was not loaded. */
     const struct sf_scene *stated;

@@ -220,11 +220,22 @@ static const struct sf_param soft_rows[] = {
 static const struct sf_param_group soft_group =
     GROUP("soft", struct sf_soft_settings, soft_rows, "The methods soft and soft-contrast.");
 
+static const struct sf_param average_rows[] = {
+    {ROW_FLOAT("depth", struct sf_average_settings, depth, 2, 0.02, 2, "radii",
+               "of the volume that a particle stands for: 2 is its sphere's")},
+    {ROW_FLOAT("plane", struct sf_average_settings, plane, 0.5, 0, 1, "",
+               "share of that depth before the particle's centre: 0: the centre is the front")},
+    {ROW_FLOAT("opacity", struct sf_average_settings, opacity, 1, 0, 1, "",
+               "multiplies what a particle covers when nothing cuts it")},
+};
+static const struct sf_param_group average_group =
+    GROUP("average_density", struct sf_average_settings, average_rows, "The method average-density.");
+
 #define ROW_OBJECT(k, f, of, text)                                                                                     \
     .key = k, .type = SF_PARAM_OBJECT, .offset = offsetof(struct sf_scene, f), .group = &of, .unit = "", .doc = text
 
-static const char *const methods[] = {"none", "thick",         "thick-larsson", "reference", "hard",
-                                      "soft", "soft-contrast", "spherical",     NULL};
+static const char *const methods[] = {"none", "thick",         "thick-larsson", "reference",       "hard",
+                                      "soft", "soft-contrast", "spherical",     "average-density", NULL};
 static const struct sf_param scene_rows[] = {
     {ROW_OBJECT("camera", camera, sf_scene_camera_group, "the eye")},
     {ROW_LIST("lights", struct sf_scene, lights, light_count, sf_scene_light_group, 0, SF_LIGHTS_MAX, "lamps")},
@@ -250,6 +261,7 @@ static const struct sf_param scene_rows[] = {
     {ROW_OBJECT("reference", reference, reference_group, "the method reference")},
     {ROW_OBJECT("billboard", billboard, billboard_group, "the methods of billboards")},
     {ROW_OBJECT("soft", soft, soft_group, "the methods soft and soft-contrast")},
+    {ROW_OBJECT("average_density", average, average_group, "the method average-density")},
 };
 const struct sf_param_group sf_scene_group =
     GROUP("scene", struct sf_scene, scene_rows, "The outermost object of a scene file.");
