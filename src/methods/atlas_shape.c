@@ -13,7 +13,9 @@ struct assets {
 /* Which channels the scene's method reads: bits of enum sf_texture_channels. */
 static uint32_t needs(const struct sf_scene *scene)
 {
-    (void)scene;
+    if (scene->method == SF_METHOD_EXTENT)
+        return SF_TEXTURE_ALPHA | (scene->extent.lighting > 0 ? SF_TEXTURE_NORMAL : 0u) |
+               (scene->extent.deviation > 0 ? SF_TEXTURE_HEIGHT : 0u);
     return SF_TEXTURE_ALPHA | SF_TEXTURE_NORMAL | SF_TEXTURE_HEIGHT;
 }
 
@@ -52,7 +54,9 @@ static enum sf_status make_texture(const struct sf_scene *scene, const struct sf
         sf_texture_options_init(&options);
         options.kind = "fbm";
         options.width = options.height = SF_ATLAS_SIDE / 2;
-        options.octaves = 4;
+        options.octaves = 3;
+        options.scale = 3;
+        options.softness = 1.2f;
         options.density = 2; /* opacity nearly in proportion to what the puff is thick */
         options.seed = (uint32_t)scene->sim.seed;
     }
@@ -74,7 +78,7 @@ static enum sf_status upload(struct sf_gpu *gpu, const struct sf_texture *textur
 {
     const size_t layer = (size_t)SF_ATLAS_SIDE * SF_ATLAS_SIDE * 4;
     uint8_t *color = malloc(layer * SF_ATLAS_LAYERS);
-    uint16_t *shape = malloc(layer * SF_ATLAS_LAYERS * sizeof *shape);
+    uint8_t *shape = malloc(layer * SF_ATLAS_LAYERS);
     enum sf_status status = color && shape ? SF_OK : sf_fail(log, SF_ERROR_MEMORY, "the atlas: out of memory");
     struct sf_texture_info info;
     float means[SF_ATLAS_LAYERS] = {0};
@@ -84,14 +88,14 @@ static enum sf_status upload(struct sf_gpu *gpu, const struct sf_texture *textur
         uint32_t tile = i % (info.tiles_x * info.tiles_y);
 
         sf_texels_rgba8(texture, SF_TEXELS_COLOR, tile, SF_ATLAS_SIDE, color + i * layer);
-        sf_texels_rgba16f(texture, SF_TEXELS_SHAPE, tile, SF_ATLAS_SIDE, shape + i * layer);
+        sf_texels_rgba8(texture, SF_TEXELS_SHAPE, tile, SF_ATLAS_SIDE, shape + i * layer);
         means[i] = mean_alpha(color + i * layer);
     }
     if (!status)
         status = sf_gpu_image_create(gpu, "atlas.color", SF_FORMAT_RGBA8_UNORM, SF_ATLAS_SIDE, SF_ATLAS_SIDE,
                                      SF_ATLAS_LAYERS, SF_ACCESS_SAMPLED, color, &assets->color);
     if (!status)
-        status = sf_gpu_image_create(gpu, "atlas.shape", SF_FORMAT_RGBA16F, SF_ATLAS_SIDE, SF_ATLAS_SIDE,
+        status = sf_gpu_image_create(gpu, "atlas.shape", SF_FORMAT_RGBA8_UNORM, SF_ATLAS_SIDE, SF_ATLAS_SIDE,
                                      SF_ATLAS_LAYERS, SF_ACCESS_SAMPLED, shape, &assets->shape);
     if (!status)
         status =
@@ -154,7 +158,6 @@ struct sf_atlas_images sf_atlas_declare(struct sf_graph *graph)
     struct sf_image_desc shape = color;
 
     shape.name = "atlas.shape";
-    shape.format = SF_FORMAT_RGBA16F;
     return (struct sf_atlas_images){
         .color = sf_graph_image(graph, &color),
         .shape = sf_graph_image(graph, &shape),

@@ -18,9 +18,9 @@ enum {
 /* In the frame's graph; images are sampled as sampler2DArray, layer: the particle's tile. */
 struct sf_atlas_images {
     sf_resource color; /* "atlas.color", RGBA8: linear R, G, B premultiplied by A; A */
-    sf_resource
-        shape; /* "atlas.shape", RGBA16F: unit normal x, y, z, to the right, up, to the viewer; height 0..1, of which 1
-                          is half a tile's side above the particle's plane */
+    /* "atlas.shape", RGBA8, whose filtering costs lavapipe a quarter of halves': (n + 1) / 2 of the unit normal to the
+     * right, up, to the viewer; height 0..1, of which 1 is half a tile's side above the particle's plane */
+    sf_resource shape;
     sf_resource means; /* "atlas.means", uniform: vec4, the mean alpha of each tile */
 };
 enum { SF_ATLAS_USES = 3 };

@@ -6,7 +6,7 @@
 #include "shared/particle.h"
 
 _Static_assert(sizeof(struct sf_billboard_push) <= SF_PUSH_BYTES_MAX, "push constants");
-_Static_assert(sizeof(struct sf_billboard) == 96, "as GLSL has it");
+_Static_assert(sizeof(struct sf_billboard) == 112, "as GLSL has it");
 _Static_assert(offsetof(struct sf_billboards, thick) == 0, "the state of the lights' part");
 
 /* The method's settings, as its shader has them. */
@@ -22,6 +22,12 @@ static void fill_own(const struct sf_scene *scene, float own[4])
         own[0] = scene->average.depth;
         own[1] = scene->average.plane;
         own[2] = scene->average.opacity;
+        break;
+    case SF_METHOD_EXTENT:
+        own[0] = scene->extent.depth;
+        own[1] = scene->extent.opacity;
+        own[2] = scene->extent.deviation;
+        own[3] = scene->extent.lighting;
         break;
     default:
         break;

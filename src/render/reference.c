@@ -40,6 +40,7 @@ static const char *foreign_medium(int32_t method)
     case SF_METHOD_CONTRAST:
     case SF_METHOD_SPHERICAL:
     case SF_METHOD_AVERAGE:
+    case SF_METHOD_EXTENT:
         return NULL;
     }
     return "a medium of its own";

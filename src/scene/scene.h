@@ -222,6 +222,7 @@ enum sf_method {
     SF_METHOD_CONTRAST,
     SF_METHOD_SPHERICAL,
     SF_METHOD_AVERAGE,
+    SF_METHOD_EXTENT,
 };
 enum sf_resolution { SF_RESOLUTION_FULL, SF_RESOLUTION_HALF, SF_RESOLUTION_QUARTER };
 enum sf_thick_placement { SF_PLACEMENT_EQUAL, SF_PLACEMENT_UNIFORM, SF_PLACEMENT_JITTERED };
@@ -293,6 +294,12 @@ struct sf_average_settings {
     float plane;   /* share of it before the particle's centre */
     float opacity; /* V */
 };
+struct sf_extent_settings {
+    float depth;     /* radii: how far the picture's alpha reaches to either side of the plane, D */
+    float opacity;   /* V */
+    float deviation; /* 0..1: of the picture's heights, by which the plane is moved to the viewer */
+    float lighting;  /* 0..1: how strongly normals light the particle */
+};
 
 struct sf_scene {
     const char *path; /* where it came from */
@@ -323,6 +330,7 @@ struct sf_scene {
     struct sf_billboard_settings billboard;
     struct sf_soft_settings soft;
     struct sf_average_settings average;
+    struct sf_extent_settings extent;
     /* The values as they were given, before directions are normalised, emitters take the medium's extinction, and files
      * are read: what controls show. NULL in a scene that was not loaded. */
     const struct sf_scene *stated;

@@ -231,11 +231,26 @@ static const struct sf_param average_rows[] = {
 static const struct sf_param_group average_group =
     GROUP("average_density", struct sf_average_settings, average_rows, "The method average-density.");
 
+static const struct sf_param extent_rows[] = {
+    {ROW_FLOAT("depth", struct sf_extent_settings, depth, 1, 0.01, 1, "radii",
+               "how far a particle extends to either side of its plane where the atlas is opaque")},
+    {ROW_FLOAT("opacity", struct sf_extent_settings, opacity, 1, 0, 1, "",
+               "multiplies what a particle covers when nothing cuts it")},
+    {ROW_FLOAT("deviation", struct sf_extent_settings, deviation, 0.5, 0, 1, "",
+               "of the atlas's heights, by which the plane is moved to the viewer pixel by pixel"),
+     .rebuild = SF_REBUILD_GRAPH},
+    {ROW_FLOAT("lighting", struct sf_extent_settings, lighting, 0.6, 0, 1, "",
+               "how much brighter the atlas's normals are towards the light than away from it"),
+     .rebuild = SF_REBUILD_GRAPH},
+};
+static const struct sf_param_group extent_group =
+    GROUP("density_extent", struct sf_extent_settings, extent_rows, "The method density-extent.");
+
 #define ROW_OBJECT(k, f, of, text)                                                                                     \
     .key = k, .type = SF_PARAM_OBJECT, .offset = offsetof(struct sf_scene, f), .group = &of, .unit = "", .doc = text
 
-static const char *const methods[] = {"none", "thick",         "thick-larsson", "reference",       "hard",
-                                      "soft", "soft-contrast", "spherical",     "average-density", NULL};
+static const char *const methods[] = {"none",          "thick",     "thick-larsson",   "reference",      "hard", "soft",
+                                      "soft-contrast", "spherical", "average-density", "density-extent", NULL};
 static const struct sf_param scene_rows[] = {
     {ROW_OBJECT("camera", camera, sf_scene_camera_group, "the eye")},
     {ROW_LIST("lights", struct sf_scene, lights, light_count, sf_scene_light_group, 0, SF_LIGHTS_MAX, "lamps")},
@@ -262,6 +277,7 @@ static const struct sf_param scene_rows[] = {
     {ROW_OBJECT("billboard", billboard, billboard_group, "the methods of billboards")},
     {ROW_OBJECT("soft", soft, soft_group, "the methods soft and soft-contrast")},
     {ROW_OBJECT("average_density", average, average_group, "the method average-density")},
+    {ROW_OBJECT("density_extent", extent, extent_group, "the method density-extent")},
 };
 const struct sf_param_group sf_scene_group =
     GROUP("scene", struct sf_scene, scene_rows, "The outermost object of a scene file.");

@@ -571,7 +571,8 @@ static void test_every_row_has_the_bits_that_it_needs(void **state)
                   {"atlas-file", "atlas", "method=thick"},
                   {"all", "billboard", "method=hard"},
                   {"all", "soft", "method=soft-contrast"},
-                  {"all", "average_density", "method=average-density"}};
+                  {"all", "average_density", "method=average-density"},
+                  {"all", "density_extent", "method=density-extent"}};
 
     (void)state;
     write_panorama();
