@@ -5,6 +5,7 @@
 #include "methods/reference.h"
 #include "methods/sprites.h"
 #include "methods/thick.h"
+#include "methods/volumetric.h"
 
 /* A method of billboards: `view_of` draws its particles, with assets of sf_<assets>_assets_*. */
 #define BILLBOARDS_WITH(assets, name_of, doc_of, view_of)                                                              \
@@ -77,5 +78,7 @@ const struct sf_method_row sf_methods[] = {
     [SF_METHOD_EXTENT] =
         BILLBOARDS_WITH(atlas, "density-extent",
                         "pictures whose alpha is their depth, lit by their normals (METHODS B6)", sf_extent_view),
+    [SF_METHOD_VOLUMETRIC] = BILLBOARDS_WITH(volumetric, "volumetric",
+                                             "spheres marched through noise in space (METHODS B7)", sf_volumetric_view),
 };
 const uint32_t sf_method_count = sizeof sf_methods / sizeof sf_methods[0];

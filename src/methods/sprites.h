@@ -10,5 +10,6 @@ enum sf_status sf_contrast_view(struct sf_method_frame *frame, void *state, cons
 enum sf_status sf_spherical_view(struct sf_method_frame *frame, void *state, const struct sf_log *log);
 enum sf_status sf_average_view(struct sf_method_frame *frame, void *state, const struct sf_log *log);
 enum sf_status sf_extent_view(struct sf_method_frame *frame, void *state, const struct sf_log *log);
+enum sf_status sf_volumetric_view(struct sf_method_frame *frame, void *state, const struct sf_log *log);
 
 #endif

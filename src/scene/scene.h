@@ -223,6 +223,7 @@ enum sf_method {
     SF_METHOD_SPHERICAL,
     SF_METHOD_AVERAGE,
     SF_METHOD_EXTENT,
+    SF_METHOD_VOLUMETRIC,
 };
 enum sf_resolution { SF_RESOLUTION_FULL, SF_RESOLUTION_HALF, SF_RESOLUTION_QUARTER };
 enum sf_thick_placement { SF_PLACEMENT_EQUAL, SF_PLACEMENT_UNIFORM, SF_PLACEMENT_JITTERED };
@@ -300,6 +301,13 @@ struct sf_extent_settings {
     float deviation; /* 0..1: of the picture's heights, by which the plane is moved to the viewer */
     float lighting;  /* 0..1: how strongly normals light the particle */
 };
+struct sf_volumetric_settings {
+    int32_t steps;   /* through a particle */
+    float scale;     /* features of the noise across a particle */
+    float strength;  /* 0..1: 0 is the uniform sphere */
+    float evolution; /* cycles of the noise in a particle's life */
+    float lighting;  /* 0..1: how much brighter the lit side is */
+};
 
 struct sf_scene {
     const char *path; /* where it came from */
@@ -331,6 +339,7 @@ struct sf_scene {
     struct sf_soft_settings soft;
     struct sf_average_settings average;
     struct sf_extent_settings extent;
+    struct sf_volumetric_settings volumetric;
     /* The values as they were given, before directions are normalised, emitters take the medium's extinction, and files
      * are read: what controls show. NULL in a scene that was not loaded. */
     const struct sf_scene *stated;

@@ -572,7 +572,8 @@ static void test_every_row_has_the_bits_that_it_needs(void **state)
                   {"all", "billboard", "method=hard"},
                   {"all", "soft", "method=soft-contrast"},
                   {"all", "average_density", "method=average-density"},
-                  {"all", "density_extent", "method=density-extent"}};
+                  {"all", "density_extent", "method=density-extent"},
+                  {"all", "volumetric", "method=volumetric"}};
 
     (void)state;
     write_panorama();
