@@ -57,7 +57,7 @@ static void test_volumetric_noise(void **state)
     }
     assert_float_equal(mixed, 0, 0.05);
     for (int k = 0; k <= 4; k++) {
-        enum { POINTS = 100000 };
+        enum { POINTS = 40000 };
         float density[3];
         double mean = 0;
 
