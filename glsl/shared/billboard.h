@@ -25,8 +25,8 @@ struct sf_billboard {
     SF_VEC4(tile);   /* cosine and sine of the tile's turn; the tile's number; life, 1 at birth to 0 */
     SF_VEC4(albedo); /* rgb; w: share of opacity that the near plane leaves of a flat billboard */
     SF_VEC4(lit[2]); /* of lights 0-3 and 4-7: the share that reaches it, by smoke and scene */
-    SF_VEC4(
-        toward); /* xyz: mean direction to the lights, each as much as it adds to what the particle scatters and emits: its
-                        length is 1 with one light and 0 with light from all around only. w: 0..1, the particle's own chance */
+    /* xyz: mean direction to the lights, each as much as it adds to what the particle scatters and emits: of length 1 with one
+     * light, and 0 with light from all around only; w: 0..1, the particle's own chance */
+    SF_VEC4(toward);
 };
 #endif
