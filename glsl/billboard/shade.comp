@@ -10,6 +10,7 @@
 #include "shared/frame.h"
 #include "shared/particle.h"
 #include "shared/billboard.h"
+#include "shared/sim.h"
 #include "shared/thick.h"
 
 layout(local_size_x = 64) in;
@@ -28,6 +29,7 @@ layout(set = 0, binding = 5, std140) uniform Args { sf_thick_args args; };
 layout(set = 0, binding = 6, std430) writeonly buffer Billboards { sf_billboard billboards[]; };
 layout(push_constant) uniform Push { sf_billboard_push push; };
 #include "lib/environment.glsl"
+#include "lib/hash.glsl"
 #include "lib/lighting.glsl"
 #include "lib/shadow.glsl"
 #include "thick/octaves.glsl"
@@ -55,6 +57,8 @@ float depth_along(vec3 from, vec3 way, float reach)
     return sum * float(stride) * push.density;
 }
 
+const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722); // Rec. 709
+
 // How far before a sphere's centre half of its light is sent, m. `extinction` 1/m.
 float before_centre(float radius, float extinction)
 {
@@ -74,7 +78,7 @@ void main()
     float dense = max(p.extinction * push.density, SELF_SHADOW != 0u ? depth_along(centre, -direction, p.radius) / p.radius : 0.0);
     vec3 at = centre - min(before_centre(p.radius, dense), away) * direction;
     float lit[SF_FRAME_LIGHTS] = float[](1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0);
-    vec3 scattered = vec3(0.0);
+    vec3 scattered = vec3(0.0), pull = vec3(0.0);
     for (uint i = 0u; i < LIGHTS; i++) {
         sf_gpu_light light = frame.lights[i];
         bool directional = uint(light.position.w) == SF_LIGHT_KIND_DIRECTIONAL;
@@ -85,7 +89,9 @@ void main()
             depth = depth_along(at, to_light, directional ? SF_DEPTH_FAR : distance(light.position.xyz, at));
         float share = SCENE_SHADOW != 0u ? scene_visibility(i, at) : 1.0;
         lit[i] = share * exp(-depth);
-        scattered += share * dot(octave_phases(dot(direction, to_light)), octave_transmittances(depth)) * irradiance;
+        vec3 more = share * dot(octave_phases(dot(direction, to_light)), octave_transmittances(depth)) * irradiance;
+        scattered += more;
+        pull += dot(LUMINANCE * frame.albedo.rgb, more) * to_light;
     }
     vec3 outward = at - args.centre.xyz;
     vec3 ambient = environment_blurred(outward / max(length(outward), 1e-6)) * push.ambient;
@@ -93,6 +99,7 @@ void main()
     float age = p.lifetime > 0.0 ? clamp(p.age / p.lifetime, 0.0, 1.0) : 0.0;
     if (RAMP != 0u)
         albedo *= frame.ramp[int(age * float(SF_FRAME_RAMP - 1) + 0.5)].rgb;
+    float tint = dot(LUMINANCE, albedo) / max(dot(LUMINANCE, frame.albedo.rgb), 1e-6); // of the ramp
 
     sf_billboard drawn;
     drawn.sphere = vec4(view, p.radius);
@@ -101,6 +108,8 @@ void main()
     drawn.albedo = vec4(albedo, push.near_fade > 0.0 ? clamp((view.z - frame.eye.w) / (push.near_fade * p.radius), 0.0, 1.0) : 1.0);
     drawn.lit[0] = vec4(lit[0], lit[1], lit[2], lit[3]);
     drawn.lit[1] = vec4(lit[4], lit[5], lit[6], lit[7]);
+    pull = (frame.world_to_view * vec4(pull, 0.0)).xyz * vec3(1.0, 1.0, -1.0);
+    drawn.toward = vec4(pull * (tint / max(dot(LUMINANCE, drawn.light.rgb), 1e-20)), sf_random_float(frame.seed, p.id, SF_RANDOM_LOOK));
     if (slot < live)
         billboards[slot] = drawn;
 }

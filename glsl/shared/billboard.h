@@ -14,7 +14,8 @@ struct sf_billboard_push {
     SF_FLOAT(detail_scale); /* tiles across a particle */
     SF_FLOAT(ambient);
     SF_FLOAT(near_fade); /* radii before the near plane in which a flat billboard fades */
-    SF_VEC4(own);        /* the method's settings, as its shader has them */
+    SF_VEC4(own);        /* the method's settings, as its shader has them: flat from the vertex shader */
+    SF_VEC4(more);       /* and what does not fit there */
 };
 
 /* A particle as it is drawn, back to front. A view's coordinates are x right, y up, z view depth. */
@@ -24,5 +25,8 @@ struct sf_billboard {
     SF_VEC4(tile);   /* cosine and sine of the tile's turn; the tile's number; life, 1 at birth to 0 */
     SF_VEC4(albedo); /* rgb; w: share of opacity that the near plane leaves of a flat billboard */
     SF_VEC4(lit[2]); /* of lights 0-3 and 4-7: the share that reaches it, by smoke and scene */
+    /* xyz: mean direction to the lights, each as much as it adds to what the particle scatters and emits: of length 1 with one
+     * light, and 0 with light from all around only; w: 0..1, the particle's own chance */
+    SF_VEC4(toward);
 };
 #endif

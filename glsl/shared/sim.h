@@ -33,6 +33,7 @@
 #define SF_RANDOM_DIRECTION 6u /* and 7 */
 #define SF_RANDOM_PLACE     8u /* to 10 */
 #define SF_RANDOM_FACE      11u
+#define SF_RANDOM_LOOK      12u /* of the picture alone */
 
 /* Births of one emitter in this step. Birth i (from 0) happens at the fraction moment + i interval of the step, kept
  * within 0..1. */

@@ -2,18 +2,46 @@
 
 #include <stddef.h>
 #include "methods/larsson.h"
+#include "methods/volumetric.h"
 #include "shared/frame.h"
 #include "shared/particle.h"
+#include "shared/volumetric.h"
 
 _Static_assert(sizeof(struct sf_billboard_push) <= SF_PUSH_BYTES_MAX, "push constants");
-_Static_assert(sizeof(struct sf_billboard) == 96, "as GLSL has it");
+_Static_assert(sizeof(struct sf_billboard) == 112, "as GLSL has it");
 _Static_assert(offsetof(struct sf_billboards, thick) == 0, "the state of the lights' part");
 
 /* The method's settings, as its shader has them. */
-static void fill_own(const struct sf_scene *scene, float own[4])
+static void fill_own(const struct sf_scene *scene, struct sf_billboard_push *push)
 {
-    own[0] = scene->soft.distance;
-    own[1] = scene->soft.power;
+    float *own = push->own;
+
+    switch ((enum sf_method)scene->method) {
+    case SF_METHOD_SOFT:
+    case SF_METHOD_CONTRAST:
+        own[0] = scene->soft.distance;
+        own[1] = scene->soft.power;
+        break;
+    case SF_METHOD_AVERAGE:
+        own[0] = scene->average.depth;
+        own[1] = scene->average.plane;
+        own[2] = scene->average.opacity;
+        break;
+    case SF_METHOD_EXTENT:
+        own[0] = scene->extent.depth;
+        own[1] = scene->extent.opacity;
+        own[2] = scene->extent.deviation;
+        own[3] = scene->extent.lighting;
+        break;
+    case SF_METHOD_VOLUMETRIC:
+        sf_volumetric_density(scene->volumetric.strength, own);
+        own[3] = scene->volumetric.scale / (2 * SF_VOLUMETRIC_CELLS);
+        push->more[0] = 6.28318531f * scene->volumetric.evolution;
+        push->more[1] = scene->volumetric.lighting;
+        break;
+    default:
+        break;
+    }
 }
 
 void sf_billboard_update(const struct sf_method_frame *frame, void *state)
@@ -34,7 +62,7 @@ void sf_billboard_update(const struct sf_method_frame *frame, void *state)
         .ambient = thick->ambient,
         .near_fade = settings->near_fade,
     };
-    fill_own(frame->scene, billboards->push.own);
+    fill_own(frame->scene, &billboards->push);
 }
 
 enum sf_status sf_billboard_light(struct sf_method_frame *frame, void *state, const struct sf_log *log)

@@ -1,19 +1,22 @@
 #include "methods/method.h"
+#include "methods/atlas_shape.h"
 #include "methods/billboard.h"
 #include "methods/larsson.h"
 #include "methods/mega.h"
 #include "methods/reference.h"
 #include "methods/sprites.h"
 #include "methods/thick.h"
+#include "methods/volumetric.h"
 
-/* A method of billboards: `view_of` draws its particles. */
-#define BILLBOARDS(name_of, doc_of, view_of)                                                                           \
+/* A method of billboards: `view_of` draws its particles, with assets of sf_<assets>_assets_*. */
+#define BILLBOARDS_WITH(assets, name_of, doc_of, view_of)                                                              \
     {                                                                                                                  \
         .name = name_of, .doc = doc_of, .light = sf_billboard_light, .view = view_of, .update = sf_billboard_update,   \
-        .state_bytes = sizeof(struct sf_billboards), .create_assets = sf_thick_assets_create,                          \
-        .destroy_assets = sf_thick_assets_destroy, .same_assets = sf_thick_assets_same,                                \
-        .bind_assets = sf_thick_assets_bind,                                                                           \
+        .state_bytes = sizeof(struct sf_billboards), .create_assets = sf_##assets##_assets_create,                     \
+        .destroy_assets = sf_##assets##_assets_destroy, .same_assets = sf_##assets##_assets_same,                      \
+        .bind_assets = sf_##assets##_assets_bind,                                                                      \
     }
+#define BILLBOARDS(name_of, doc_of, view_of) BILLBOARDS_WITH(thick, name_of, doc_of, view_of)
 
 const struct sf_method_row sf_methods[] = {
     [SF_METHOD_NONE] = {.name = "none", .doc = "the scene without smoke"},
@@ -85,5 +88,12 @@ const struct sf_method_row sf_methods[] = {
             .same_assets = sf_thick_assets_same,
             .bind_assets = sf_thick_assets_bind,
         },
+    [SF_METHOD_AVERAGE] = BILLBOARDS(
+        "average-density", "slabs of even density, cut off by scene and near plane (METHODS B5)", sf_average_view),
+    [SF_METHOD_EXTENT] =
+        BILLBOARDS_WITH(atlas, "density-extent",
+                        "pictures whose alpha is their depth, lit by their normals (METHODS B6)", sf_extent_view),
+    [SF_METHOD_VOLUMETRIC] = BILLBOARDS_WITH(volumetric, "volumetric",
+                                             "spheres marched through noise in space (METHODS B7)", sf_volumetric_view),
 };
 const uint32_t sf_method_count = sizeof sf_methods / sizeof sf_methods[0];

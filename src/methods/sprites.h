@@ -8,5 +8,8 @@ enum sf_status sf_hard_view(struct sf_method_frame *frame, void *state, const st
 enum sf_status sf_soft_view(struct sf_method_frame *frame, void *state, const struct sf_log *log);
 enum sf_status sf_contrast_view(struct sf_method_frame *frame, void *state, const struct sf_log *log);
 enum sf_status sf_spherical_view(struct sf_method_frame *frame, void *state, const struct sf_log *log);
+enum sf_status sf_average_view(struct sf_method_frame *frame, void *state, const struct sf_log *log);
+enum sf_status sf_extent_view(struct sf_method_frame *frame, void *state, const struct sf_log *log);
+enum sf_status sf_volumetric_view(struct sf_method_frame *frame, void *state, const struct sf_log *log);
 
 #endif

@@ -40,6 +40,9 @@ static const char *foreign_medium(int32_t method)
     case SF_METHOD_CONTRAST:
     case SF_METHOD_SPHERICAL:
     case SF_METHOD_MEGA:
+    case SF_METHOD_AVERAGE:
+    case SF_METHOD_EXTENT:
+    case SF_METHOD_VOLUMETRIC:
         return NULL;
     }
     return "a medium of its own";
@@ -96,6 +99,27 @@ static void note_larsson(struct sf_reference *reference, const struct sf_larsson
                                             "larsson.life_fade is %g: it thins smoke with age; the reference takes "
                                             "particles as the simulation leaves them",
                                             (double)larsson->life_fade));
+}
+
+/* The same of billboards that stand for volumes. */
+static void note_volumes(struct sf_reference *reference, const struct sf_scene *scene)
+{
+    float opacity = scene->method == SF_METHOD_AVERAGE  ? scene->average.opacity
+                    : scene->method == SF_METHOD_EXTENT ? scene->extent.opacity
+                                                        : 1;
+    const char *group = scene->method == SF_METHOD_AVERAGE ? "average_density" : "density_extent";
+
+    if (opacity < 1)
+        add_note(reference,
+                 sf_arena_printf(&reference->arena, "%s.opacity is %g: smoke covers less than the reference's", group,
+                                 (double)opacity));
+    if (scene->method == SF_METHOD_EXTENT)
+        add_note(reference, "density-extent draws the atlas's pictures; the reference has even spheres");
+    if (scene->method == SF_METHOD_VOLUMETRIC && scene->volumetric.strength > 0)
+        add_note(reference, sf_arena_printf(&reference->arena,
+                                            "volumetric.strength is %g: there is noise in the density; the reference "
+                                            "has even spheres",
+                                            (double)scene->volumetric.strength));
 }
 
 /* ---- making one ---- */
@@ -193,6 +217,8 @@ enum sf_status sf_reference_create(const struct sf_scene *scene, const struct sf
         note_thick(reference, &scene->thick);
     if (!status && scene->method == SF_METHOD_LARSSON)
         note_larsson(reference, &scene->larsson);
+    if (!status)
+        note_volumes(reference, scene);
     if (status)
         sf_reference_destroy(&reference);
     *out = reference;

@@ -251,6 +251,9 @@ enum sf_method {
     SF_METHOD_CONTRAST,
     SF_METHOD_SPHERICAL,
     SF_METHOD_MEGA,
+    SF_METHOD_AVERAGE,
+    SF_METHOD_EXTENT,
+    SF_METHOD_VOLUMETRIC,
 };
 enum sf_resolution { SF_RESOLUTION_FULL, SF_RESOLUTION_HALF, SF_RESOLUTION_QUARTER };
 enum sf_thick_placement { SF_PLACEMENT_EQUAL, SF_PLACEMENT_UNIFORM, SF_PLACEMENT_JITTERED };
@@ -317,6 +320,24 @@ struct sf_soft_settings {
     float distance; /* m of the fade; 0: the particle's radius */
     float power;    /* of soft-contrast */
 };
+struct sf_average_settings {
+    float depth;   /* radii: of the volume, D */
+    float plane;   /* share of it before the particle's centre */
+    float opacity; /* V */
+};
+struct sf_extent_settings {
+    float depth;     /* radii: how far the picture's alpha reaches to either side of the plane, D */
+    float opacity;   /* V */
+    float deviation; /* 0..1: of the picture's heights, by which the plane is moved to the viewer */
+    float lighting;  /* 0..1: how strongly normals light the particle */
+};
+struct sf_volumetric_settings {
+    int32_t steps;   /* through a particle */
+    float scale;     /* features of the noise across a particle */
+    float strength;  /* 0..1: 0 is the uniform sphere */
+    float evolution; /* cycles of the noise in a particle's life */
+    float lighting;  /* 0..1: how much brighter the lit side is */
+};
 
 /* What is in the picture is in heights of the frame, so that it looks the same at any size. Beside these, thick's
  * resolution, ambient and shadows. */
@@ -371,6 +392,9 @@ struct sf_scene {
     struct sf_billboard_settings billboard;
     struct sf_soft_settings soft;
     struct sf_mega_settings mega;
+    struct sf_average_settings average;
+    struct sf_extent_settings extent;
+    struct sf_volumetric_settings volumetric;
     /* The values as they were given, before directions are normalised, emitters take the medium's extinction, and files
      * are read: what controls show. NULL in a scene that was not loaded. */
     const struct sf_scene *stated;

@@ -251,12 +251,55 @@ static const struct sf_param mega_rows[] = {
 static const struct sf_param_group mega_group =
     GROUP("mega", struct sf_mega_settings, mega_rows,
           "The method mega; it reads resolution, ambient, scene_shadow and ground_shadow of thick, too.");
+static const struct sf_param average_rows[] = {
+    {ROW_FLOAT("depth", struct sf_average_settings, depth, 2, 0.02, 2, "radii",
+               "of the volume that a particle stands for: 2 is its sphere's")},
+    {ROW_FLOAT("plane", struct sf_average_settings, plane, 0.5, 0, 1, "",
+               "share of that depth before the particle's centre: 0: the centre is the front")},
+    {ROW_FLOAT("opacity", struct sf_average_settings, opacity, 1, 0, 1, "",
+               "multiplies what a particle covers when nothing cuts it")},
+};
+static const struct sf_param_group average_group =
+    GROUP("average_density", struct sf_average_settings, average_rows, "The method average-density.");
+
+static const struct sf_param extent_rows[] = {
+    {ROW_FLOAT("depth", struct sf_extent_settings, depth, 1, 0.01, 1, "radii",
+               "how far a particle extends to either side of its plane where the atlas is opaque")},
+    {ROW_FLOAT("opacity", struct sf_extent_settings, opacity, 1, 0, 1, "",
+               "multiplies what a particle covers when nothing cuts it")},
+    {ROW_FLOAT("deviation", struct sf_extent_settings, deviation, 0.5, 0, 1, "",
+               "of the atlas's heights, by which the plane is moved to the viewer pixel by pixel"),
+     .rebuild = SF_REBUILD_GRAPH},
+    {ROW_FLOAT("lighting", struct sf_extent_settings, lighting, 0.6, 0, 1, "",
+               "how much brighter the atlas's normals are towards the light than away from it"),
+     .rebuild = SF_REBUILD_GRAPH},
+};
+static const struct sf_param_group extent_group =
+    GROUP("density_extent", struct sf_extent_settings, extent_rows, "The method density-extent.");
+
+static const struct sf_param volumetric_rows[] = {
+    {ROW_INT("steps", struct sf_volumetric_settings, steps, 8, 1, 64, "", "along each ray through a particle"),
+     .rebuild = SF_REBUILD_GRAPH},
+    {ROW_FLOAT("scale", struct sf_volumetric_settings, scale, 3, 0.25, 16, "",
+               "features of the noise across a particle")},
+    {ROW_FLOAT("strength", struct sf_volumetric_settings, strength, 0.8, 0, 1, "",
+               "of the noise in the density; 0: even spheres, exactly"),
+     .rebuild = SF_REBUILD_GRAPH},
+    {ROW_FLOAT("evolution", struct sf_volumetric_settings, evolution, 0.5, 0, 16, "",
+               "how often the noise becomes another one, and itself again, in a particle's life")},
+    {ROW_FLOAT("lighting", struct sf_volumetric_settings, lighting, 0.7, 0, 1, "",
+               "how much brighter a particle is where its light comes from"),
+     .rebuild = SF_REBUILD_GRAPH},
+};
+static const struct sf_param_group volumetric_group =
+    GROUP("volumetric", struct sf_volumetric_settings, volumetric_rows, "The method volumetric.");
 
 #define ROW_OBJECT(k, f, of, text)                                                                                     \
     .key = k, .type = SF_PARAM_OBJECT, .offset = offsetof(struct sf_scene, f), .group = &of, .unit = "", .doc = text
 
-static const char *const methods[] = {"none", "thick",         "thick-larsson", "reference", "hard",
-                                      "soft", "soft-contrast", "spherical",     "mega",      NULL};
+static const char *const methods[] = {
+    "none",      "thick", "thick-larsson",   "reference",      "hard",       "soft", "soft-contrast",
+    "spherical", "mega",  "average-density", "density-extent", "volumetric", NULL};
 static const struct sf_param scene_rows[] = {
     {ROW_OBJECT("camera", camera, sf_scene_camera_group, "the eye")},
     {ROW_LIST("lights", struct sf_scene, lights, light_count, sf_scene_light_group, 0, SF_LIGHTS_MAX, "lamps")},
@@ -286,6 +329,9 @@ static const struct sf_param scene_rows[] = {
     {ROW_OBJECT("billboard", billboard, billboard_group, "the methods of billboards")},
     {ROW_OBJECT("soft", soft, soft_group, "the methods soft and soft-contrast")},
     {ROW_OBJECT("mega", mega, mega_group, "the method mega")},
+    {ROW_OBJECT("average_density", average, average_group, "the method average-density")},
+    {ROW_OBJECT("density_extent", extent, extent_group, "the method density-extent")},
+    {ROW_OBJECT("volumetric", volumetric, volumetric_group, "the method volumetric")},
 };
 const struct sf_param_group sf_scene_group =
     GROUP("scene", struct sf_scene, scene_rows, "The outermost object of a scene file.");

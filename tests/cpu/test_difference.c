@@ -578,7 +578,10 @@ static void test_every_row_has_the_bits_that_it_needs(void **state)
                   {"atlas-file", "atlas", "method=thick"},
                   {"all", "billboard", "method=hard"},
                   {"all", "soft", "method=soft-contrast"},
-                  {"all", "mega", "method=mega"}};
+                  {"all", "mega", "method=mega"},
+                  {"all", "average_density", "method=average-density"},
+                  {"all", "density_extent", "method=density-extent"},
+                  {"all", "volumetric", "method=volumetric"}};
 
     (void)state;
     write_panorama();

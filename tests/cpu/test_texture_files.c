@@ -322,28 +322,49 @@ static void test_whole(void **state)
 
 /* ---- for devices ---- */
 
+/* What a channel of a plane is to be at a texel. */
+static double plane_value(const struct sf_texture_info *info, enum sf_texels_plane plane, uint32_t tile, uint32_t x,
+                          uint32_t y, size_t c)
+{
+    const float *texel = kit_texel(info, plane == SF_TEXELS_SHAPE ? info->shape : info->color, tile, x, y);
+
+    return plane == SF_TEXELS_SHAPE || c == 3 ? (double)texel[c] : (double)(texel[c] * texel[3]);
+}
+
+/* Both planes of each tile: at its own size as they are, at half of it means of squares, with normals of unit length. */
 static void test_texels(void **state)
 {
     struct sf_texture *texture = make();
-    size_t count = (size_t)texture->info.width * texture->info.height * 4;
-    uint8_t *bytes = malloc(count);
-    uint16_t *halves = malloc(count * sizeof *halves);
+    struct sf_texture_info info = kit_info(texture);
+    uint8_t bytes[SIDE * SIDE * 4];
+    uint16_t halves[SIDE * SIDE * 4];
 
     (void)state;
-    assert_true(bytes && halves);
-    for (int plane = SF_TEXELS_COLOR; plane <= SF_TEXELS_SHAPE; plane++) {
-        sf_texels_rgba8(texture, (enum sf_texels_plane)plane, bytes);
-        sf_texels_rgba16f(texture, (enum sf_texels_plane)plane, halves);
-        for (size_t i = 0; i < count; i++) {
-            float wanted =
-                plane ? texture->shape[i] : texture->color[i] * (i % 4 < 3 ? texture->color[i - i % 4 + 3] : 1.0f);
+    for (uint32_t i = 0; i < 2 * 4; i++) {
+        enum sf_texels_plane plane = (enum sf_texels_plane)(i % 2);
+        uint32_t tile = i / 2;
 
-            assert_float_equal(sf_half_to_float(halves[i]), wanted, 1e-3);
-            assert_float_equal(bytes[i] / 255.0, plane && i % 4 < 3 ? 0.5f * wanted + 0.5f : wanted, 0.51 / 255);
+        sf_texels_rgba8(texture, plane, tile, SIDE, bytes);
+        sf_texels_rgba16f(texture, plane, tile, SIDE, halves);
+        for (uint32_t k = 0; k < SIDE * SIDE * 4; k++) {
+            double wanted = plane_value(&info, plane, tile, k / 4 % SIDE, k / 4 / SIDE, k % 4);
+
+            assert_float_equal(sf_half_to_float(halves[k]), wanted, 1e-3);
+            assert_float_equal(bytes[k] / 255.0, plane && k % 4 < 3 ? 0.5 * wanted + 0.5 : wanted, 0.51 / 255);
+        }
+        sf_texels_rgba16f(texture, plane, tile, SIDE / 2, halves);
+        for (uint32_t k = 0; k < SIDE * SIDE / 4; k++) {
+            double mean[4] = {0}, length = 1;
+
+            for (uint32_t j = 0; j < 16; j++)
+                mean[j % 4] += 0.25 * plane_value(&info, plane, tile, k % (SIDE / 2) * 2 + j / 4 % 2,
+                                                  k / (SIDE / 2) * 2 + j / 8, j % 4);
+            if (plane == SF_TEXELS_SHAPE)
+                length = sqrt(mean[0] * mean[0] + mean[1] * mean[1] + mean[2] * mean[2]);
+            for (uint32_t c = 0; c < 4; c++)
+                assert_float_equal(sf_half_to_float(halves[4 * k + c]), mean[c] / (c < 3 ? length : 1), 1e-3);
         }
     }
-    free(bytes);
-    free(halves);
     sf_texture_destroy(&texture);
 }
 
