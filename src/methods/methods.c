@@ -1,4 +1,5 @@
 #include "methods/method.h"
+#include "methods/atlas_shape.h"
 #include "methods/billboard.h"
 #include "methods/larsson.h"
 #include "methods/reference.h"
@@ -12,6 +13,15 @@
         .state_bytes = sizeof(struct sf_billboards), .create_assets = sf_thick_assets_create,                          \
         .destroy_assets = sf_thick_assets_destroy, .same_assets = sf_thick_assets_same,                                \
         .bind_assets = sf_thick_assets_bind,                                                                           \
+    }
+
+/* Those that draw with the pictures of the scene's atlas. */
+#define PICTURED(name_of, doc_of, view_of, update_of)                                                                  \
+    {                                                                                                                  \
+        .name = name_of, .doc = doc_of, .light = sf_billboard_light, .view = view_of, .update = update_of,             \
+        .state_bytes = sizeof(struct sf_billboards), .create_assets = sf_atlas_assets_create,                          \
+        .destroy_assets = sf_atlas_assets_destroy, .same_assets = sf_atlas_assets_same,                                \
+        .bind_assets = sf_atlas_assets_bind,                                                                           \
     }
 
 const struct sf_method_row sf_methods[] = {
@@ -70,5 +80,11 @@ const struct sf_method_row sf_methods[] = {
         BILLBOARDS("soft-contrast", "the same with a fade that is steep in its middle (METHODS B3)", sf_contrast_view),
     [SF_METHOD_SPHERICAL] = BILLBOARDS(
         "spherical", "spheres, denser in the middle, cut off by scene and near plane (METHODS B4)", sf_spherical_view),
+    [SF_METHOD_LIT] =
+        PICTURED("lit", "billboards with the atlas's normals, each pixel lit, from behind as well (METHODS B9)",
+                 sf_lit_view, sf_lit_update),
+    [SF_METHOD_SCATTERING] = PICTURED(
+        "lit-scattering", "the same with light dimmed on its way through the puff's height field (METHODS B10)",
+        sf_scattering_view, sf_scattering_update),
 };
 const uint32_t sf_method_count = sizeof sf_methods / sizeof sf_methods[0];

@@ -39,6 +39,8 @@ static const char *foreign_medium(int32_t method)
     case SF_METHOD_SOFT:
     case SF_METHOD_CONTRAST:
     case SF_METHOD_SPHERICAL:
+    case SF_METHOD_LIT:
+    case SF_METHOD_SCATTERING:
         return NULL;
     }
     return "a medium of its own";

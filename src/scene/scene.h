@@ -221,6 +221,8 @@ enum sf_method {
     SF_METHOD_SOFT,
     SF_METHOD_CONTRAST,
     SF_METHOD_SPHERICAL,
+    SF_METHOD_LIT,
+    SF_METHOD_SCATTERING,
 };
 enum sf_resolution { SF_RESOLUTION_FULL, SF_RESOLUTION_HALF, SF_RESOLUTION_QUARTER };
 enum sf_thick_placement { SF_PLACEMENT_EQUAL, SF_PLACEMENT_UNIFORM, SF_PLACEMENT_JITTERED };
@@ -287,6 +289,24 @@ struct sf_soft_settings {
     float distance; /* m of the fade; 0: the particle's radius */
     float power;    /* of soft-contrast */
 };
+/* Of lit and lit-scattering. */
+struct sf_lit_settings {
+    float relief;       /* 0: lit as balls; 1: by the atlas's normals; between: a mix */
+    float wrap;         /* 0..1: how far light reaches round a puff */
+    float translucency; /* strength of the light from behind: 1 takes in as much of it as isotropic smoke */
+    float halo;         /* of lit: how much of it the middle of a puff takes away, as an exponent */
+    float blend;        /* 0: covers what is behind; 1: adds to it */
+    int32_t ramp;       /* enum sf_lit_ramp: what the scene's ramp runs over */
+};
+enum sf_lit_ramp { SF_LIT_RAMP_LIFE, SF_LIT_RAMP_INTENSITY };
+struct sf_scattering_settings {
+    int32_t steps;     /* of a ray through the height field, at most */
+    int32_t steps_min; /* at least, or `steps` where that is less */
+    int32_t more;      /* enum sf_scattering_more: which pixels have more of them */
+    float absorption;  /* times the medium's extinction in the height field */
+    float dampening;   /* 1/particle: of the light, by the number of particles */
+};
+enum sf_scattering_more { SF_SCATTERING_MORE_GRAZING, SF_SCATTERING_MORE_FACING };
 
 struct sf_scene {
     const char *path; /* where it came from */
@@ -316,6 +336,8 @@ struct sf_scene {
     struct sf_reference_settings reference;
     struct sf_billboard_settings billboard;
     struct sf_soft_settings soft;
+    struct sf_lit_settings lit;
+    struct sf_scattering_settings scattering;
     /* The values as they were given, before directions are normalised, emitters take the medium's extinction, and files
      * are read: what controls show. NULL in a scene that was not loaded. */
     const struct sf_scene *stated;

@@ -570,7 +570,9 @@ static void test_every_row_has_the_bits_that_it_needs(void **state)
                   {"atlas", "atlas", "method=thick"},
                   {"atlas-file", "atlas", "method=thick"},
                   {"all", "billboard", "method=hard"},
-                  {"all", "soft", "method=soft-contrast"}};
+                  {"all", "soft", "method=soft-contrast"},
+                  {"all", "lit", "method=lit"},
+                  {"all", "scattering", "method=lit-scattering"}};
 
     (void)state;
     write_panorama();
