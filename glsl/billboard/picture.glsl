@@ -5,7 +5,7 @@
 
 layout(set = 0, binding = 1, std430) readonly buffer Billboards { sf_billboard billboards[]; };
 layout(set = 0, binding = 4) uniform sampler2DArray atlas_color; // premultiplied; alpha
-layout(set = 0, binding = 5) uniform sampler2DArray atlas_shape; // (normal + 1) / 2; height
+layout(set = 0, binding = 5) uniform sampler2DArray atlas_shape; // (127 normal + 128) / 255, so that 0 is exact; height
 layout(set = 0, binding = 6, std140) uniform Means { vec4 means; }; // of alpha, of each tile
 layout(location = 6) flat in uint number;
 
@@ -32,7 +32,7 @@ vec4 picture_color(sf_picture picture)
 // Unit normal, x to the right, y up, z to the viewer of the frame; height, in radii before the particle's plane.
 vec4 picture_shape(sf_picture picture)
 {
-    vec4 shape = textureLod(atlas_shape, picture.at, 0.0) * vec4(2.0, 2.0, 2.0, 1.0) - vec4(1.0, 1.0, 1.0, 0.0);
+    vec4 shape = textureLod(atlas_shape, picture.at, 0.0) * vec4(vec3(255.0 / 127.0), 1.0) - vec4(vec3(128.0 / 127.0), 0.0);
     float shrink = inversesqrt(max(dot(shape.xyz, shape.xyz), 1e-12)); // filtering shortens
     return vec4(vec2(picture.turn.x * shape.x + picture.turn.y * shape.y, picture.turn.x * shape.y - picture.turn.y * shape.x) * shrink, shape.z * shrink, shape.w);
 }

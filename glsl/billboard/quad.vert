@@ -19,6 +19,9 @@ layout(location = 3) flat out vec4 light;     // rgb: radiance for each unit of 
 layout(location = 4) flat out vec4 settings;  // x: near plane; y: share that it leaves; z: detail; w: life
 layout(location = 5) flat out vec4 own;       // the method's settings
 layout(location = 6) flat out uint number;    // of the billboard, for those who need more of it
+layout(location = 7) flat out vec4 turn;      // the rest of sf_billboard, for those who light each pixel
+layout(location = 8) flat out vec4 albedo;
+layout(location = 9) flat out vec4 lit[2];
 
 void main()
 {
@@ -48,6 +51,9 @@ void main()
     settings = vec4(frame.eye.w, b.albedo.w, push.detail, b.tile.w);
     own = push.own;
     number = gl_InstanceIndex;
+    turn = b.tile;
+    albedo = b.albedo;
+    lit = b.lit;
     vec2 ndc = ray.xy / tangent;
     vec2 share = frame.size.xy / (float(push.scale) * vec2(push.width, push.height)); // of the image that the frame covers
     gl_Position = seen ? vec4((vec2(ndc.x, -ndc.y) + 1.0) * share - 1.0, 0.5, 1.0) : vec4(2.0, 2.0, 0.0, 1.0);

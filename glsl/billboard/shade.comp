@@ -20,6 +20,7 @@ layout(constant_id = 2) const uint SCENE_SHADOW = 0u;
 layout(constant_id = 3) const uint RAMP = 0u;
 layout(constant_id = 4) const uint TURN = 8u; // particles that a subgroup reads together
 layout(constant_id = 5) const uint OCTAVES = 1u;
+layout(constant_id = 6) const uint OTHERS = 0u; // 1: a particle does not dim its own light, and all octaves arrive at it
 layout(set = 0, binding = 0, std140) uniform Frame { sf_gpu_frame frame; };
 layout(set = 0, binding = 1, std430) readonly buffer Particles { sf_particle particles[]; };
 layout(set = 0, binding = 2, std430) readonly buffer Counts { sf_particle_counts counts; };
@@ -34,8 +35,10 @@ layout(push_constant) uniform Push { sf_billboard_push push; };
 #include "lib/shadow.glsl"
 #include "thick/octaves.glsl"
 
-// Optical depth from `from` along the unit vector `way` as far as `reach`. All lanes of a subgroup walk together.
-float depth_along(vec3 from, vec3 way, float reach)
+const uint NONE = 0xffffffffu;
+
+// Optical depth of all particles but number `own` from `from` along the unit vector `way` as far as `reach`. All lanes of a subgroup walk together.
+float depth_along(vec3 from, vec3 way, float reach, uint own)
 {
     uint live = counts.live;
     uint stride = max((live + SF_BILLBOARD_OCCLUDERS - 1u) / SF_BILLBOARD_OCCLUDERS, 1u);
@@ -51,7 +54,10 @@ float depth_along(vec3 from, vec3 way, float reach)
             float along = dot(apart, way);
             vec3 miss = apart - along * way;
             float reached = sqrt(max(sphere.w * sphere.w - dot(miss, miss), 0.0));
-            sum += subgroupShuffle(extinction, k) * max(min(along + reached, reach) - max(along - reached, 0.0), 0.0);
+            float matter = subgroupShuffle(extinction, k);
+            if (OTHERS != 0u)
+                matter = i + k * stride == own ? 0.0 : matter;
+            sum += matter * max(min(along + reached, reach) - max(along - reached, 0.0), 0.0);
         }
     }
     return sum * float(stride) * push.density;
@@ -69,13 +75,14 @@ float before_centre(float radius, float extinction)
 void main()
 {
     uint slot = gl_GlobalInvocationID.x, live = counts.live;
-    sf_particle p = particles[pairs[min(slot, live - 1u)].y];
+    uint own = pairs[min(slot, live - 1u)].y;
+    sf_particle p = particles[own];
     vec3 centre = vec3(p.x, p.y, p.z);
     vec3 view = (frame.world_to_view * vec4(centre, 1.0)).xyz * vec3(1.0, 1.0, -1.0);
     float away = length(centre - frame.eye.xyz);
     vec3 direction = away > 0.0 ? (centre - frame.eye.xyz) / away : frame.forward.xyz;
     // Other particles in the near half count as if they were spread over all of it.
-    float dense = max(p.extinction * push.density, SELF_SHADOW != 0u ? depth_along(centre, -direction, p.radius) / p.radius : 0.0);
+    float dense = max(p.extinction * push.density, SELF_SHADOW != 0u ? depth_along(centre, -direction, p.radius, NONE) / p.radius : 0.0);
     vec3 at = centre - min(before_centre(p.radius, dense), away) * direction;
     float lit[SF_FRAME_LIGHTS] = float[](1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0);
     vec3 scattered = vec3(0.0), pull = vec3(0.0);
@@ -86,9 +93,9 @@ void main()
         vec3 irradiance = light_irradiance(light, at, to_light);
         float depth = 0.0;
         if (SELF_SHADOW != 0u)
-            depth = depth_along(at, to_light, directional ? SF_DEPTH_FAR : distance(light.position.xyz, at));
+            depth = depth_along(at, to_light, directional ? SF_DEPTH_FAR : distance(light.position.xyz, at), own);
         float share = SCENE_SHADOW != 0u ? scene_visibility(i, at) : 1.0;
-        lit[i] = share * exp(-depth);
+        lit[i] = share * (OTHERS != 0u ? dot(octave_strengths(), octave_transmittances(depth)) : exp(-depth));
         vec3 more = share * dot(octave_phases(dot(direction, to_light)), octave_transmittances(depth)) * irradiance;
         scattered += more;
         pull += dot(LUMINANCE * frame.albedo.rgb, more) * to_light;

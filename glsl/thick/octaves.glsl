@@ -18,6 +18,12 @@ vec4 octave_phases(float cosine)
     return phases;
 }
 
+// Of octaves without a phase function.
+vec4 octave_strengths()
+{
+    return vec4(1.0, OCTAVES > 1u ? 0.8 : 0.0, OCTAVES > 2u ? 0.64 : 0.0, OCTAVES > 3u ? 0.512 : 0.0);
+}
+
 // exp(-depth), exp(-depth / 2), exp(-depth / 4), exp(-depth / 8), as far as there are octaves.
 vec4 octave_transmittances(float depth)
 {

@@ -44,7 +44,7 @@ void main()
     vec3 beat = to_noise(stride, tile) * vec3(1.0, 1.0, float(SF_VOLUMETRIC_SIDE));
     vec3 place = (to_noise(at, tile) + fract(toward.w * vec3(1.0, 61.0, 3701.0))) * vec3(1.0, 1.0, float(SF_VOLUMETRIC_SIDE));
     // One field becomes the other and its own negative, with the same variance all the time.
-    float phase = push.more.x * (1.0 - settings.w);
+    float phase = push.more[0].x * (1.0 - settings.w);
     vec2 fields = vec2(cos(phase), sin(phase)) * (2.0 * SF_VOLUMETRIC_RANGE);
     float centre = -0.5 * (fields.x + fields.y);
     float gathered = 0.0, lit = 0.0, through = 1.0;
@@ -60,7 +60,7 @@ void main()
         gathered += part;
         if (LIGHTING != 0u) {
             float left = exp(-depth * gathered);
-            lit += (through - left) * max(1.0 + push.more.y * dot(at, toward.xyz), 0.0);
+            lit += (through - left) * max(1.0 + push.more[0].y * dot(at, toward.xyz), 0.0);
             through = left;
         }
         at += stride;

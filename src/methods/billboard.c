@@ -36,8 +36,8 @@ static void fill_own(const struct sf_scene *scene, struct sf_billboard_push *pus
     case SF_METHOD_VOLUMETRIC:
         sf_volumetric_density(scene->volumetric.strength, own);
         own[3] = scene->volumetric.scale / (2 * SF_VOLUMETRIC_CELLS);
-        push->more[0] = 6.28318531f * scene->volumetric.evolution;
-        push->more[1] = scene->volumetric.lighting;
+        push->more[0][0] = 6.28318531f * scene->volumetric.evolution;
+        push->more[0][1] = scene->volumetric.lighting;
         break;
     default:
         break;
@@ -86,8 +86,8 @@ static void add_pass(struct sf_method_frame *frame, const struct sf_billboards *
     sf_graph_pass(frame->graph, &desc);
 }
 
-/* The particles back to front, and lit. */
-static void add_list(struct sf_method_frame *frame, struct sf_billboards *billboards)
+/* The particles back to front, and lit; `others`: not dimmed by themselves. */
+static void add_list(struct sf_method_frame *frame, struct sf_billboards *billboards, bool others)
 {
     const struct sf_scene *scene = frame->scene;
     uint32_t capacity = (uint32_t)scene->sim.capacity;
@@ -134,8 +134,8 @@ static void add_list(struct sf_method_frame *frame, struct sf_billboards *billbo
                                    .shader = "billboard/shade.comp",
                                    .constants = {scene->light_count, scene->billboard.self_shadow,
                                                  scene->thick.scene_shadow, scene->ramp_count > 0,
-                                                 narrow ? 4 : SF_THICK_TURN, (uint32_t)scene->thick.octaves},
-                                   .constant_count = 6,
+                                                 narrow ? 4 : SF_THICK_TURN, (uint32_t)scene->thick.octaves, others},
+                                   .constant_count = 7,
                                    .indirect = frame->counts,
                                    .indirect_offset = SF_COUNTS_DISPATCH_OFFSET});
 }
@@ -259,7 +259,7 @@ enum sf_status sf_billboard_view(struct sf_method_frame *frame, void *state, con
 
     (void)log;
     billboards->thick.atlas = sf_thick_atlas_resource(frame->graph);
-    add_list(frame, billboards);
+    add_list(frame, billboards, look->dims_itself);
     add_targets(frame, billboards);
     add_draw(
         frame, billboards, look,

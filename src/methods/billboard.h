@@ -24,6 +24,8 @@ struct sf_billboard_look {
     const char *name;     /* of the method's own pass: "hard.draw" */
     const char *fragment; /* includes billboard/particle.glsl */
     bool whole;           /* the rectangle covers the sphere, and not the disc through its centre */
+    bool dims_itself; /* the fragment says how light comes through its own particle: `lit` is what others leave, octaves
+                             of thick added up */
     /* What the fragment reads beyond that, at bindings from 4 on; specialization constants from id 2 on. */
     const struct sf_use *uses;
     uint32_t use_count;

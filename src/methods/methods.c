@@ -18,6 +18,15 @@
     }
 #define BILLBOARDS(name_of, doc_of, view_of) BILLBOARDS_WITH(thick, name_of, doc_of, view_of)
 
+/* Those that draw with the pictures of the scene's atlas. */
+#define PICTURED(name_of, doc_of, view_of, update_of)                                                                  \
+    {                                                                                                                  \
+        .name = name_of, .doc = doc_of, .light = sf_billboard_light, .view = view_of, .update = update_of,             \
+        .state_bytes = sizeof(struct sf_billboards), .create_assets = sf_atlas_assets_create,                          \
+        .destroy_assets = sf_atlas_assets_destroy, .same_assets = sf_atlas_assets_same,                                \
+        .bind_assets = sf_atlas_assets_bind,                                                                           \
+    }
+
 const struct sf_method_row sf_methods[] = {
     [SF_METHOD_NONE] = {.name = "none", .doc = "the scene without smoke"},
     [SF_METHOD_THICK] =
@@ -95,5 +104,11 @@ const struct sf_method_row sf_methods[] = {
                         "pictures whose alpha is their depth, lit by their normals (METHODS B6)", sf_extent_view),
     [SF_METHOD_VOLUMETRIC] = BILLBOARDS_WITH(volumetric, "volumetric",
                                              "spheres marched through noise in space (METHODS B7)", sf_volumetric_view),
+    [SF_METHOD_LIT] =
+        PICTURED("lit", "billboards with the atlas's normals, each pixel lit, from behind as well (METHODS B9)",
+                 sf_lit_view, sf_lit_update),
+    [SF_METHOD_SCATTERING] = PICTURED(
+        "lit-scattering", "the same with light dimmed on its way through the puff's height field (METHODS B10)",
+        sf_scattering_view, sf_scattering_update),
 };
 const uint32_t sf_method_count = sizeof sf_methods / sizeof sf_methods[0];

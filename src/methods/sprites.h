@@ -11,5 +11,11 @@ enum sf_status sf_spherical_view(struct sf_method_frame *frame, void *state, con
 enum sf_status sf_average_view(struct sf_method_frame *frame, void *state, const struct sf_log *log);
 enum sf_status sf_extent_view(struct sf_method_frame *frame, void *state, const struct sf_log *log);
 enum sf_status sf_volumetric_view(struct sf_method_frame *frame, void *state, const struct sf_log *log);
+enum sf_status sf_lit_view(struct sf_method_frame *frame, void *state, const struct sf_log *log);
+enum sf_status sf_scattering_view(struct sf_method_frame *frame, void *state, const struct sf_log *log);
+
+/* Their `update`, which takes the place of sf_billboard_update. */
+void sf_lit_update(const struct sf_method_frame *frame, void *state);
+void sf_scattering_update(const struct sf_method_frame *frame, void *state);
 
 #endif

@@ -43,6 +43,8 @@ static const char *foreign_medium(int32_t method)
     case SF_METHOD_AVERAGE:
     case SF_METHOD_EXTENT:
     case SF_METHOD_VOLUMETRIC:
+    case SF_METHOD_LIT:
+    case SF_METHOD_SCATTERING:
         return NULL;
     }
     return "a medium of its own";

@@ -254,6 +254,8 @@ enum sf_method {
     SF_METHOD_AVERAGE,
     SF_METHOD_EXTENT,
     SF_METHOD_VOLUMETRIC,
+    SF_METHOD_LIT,
+    SF_METHOD_SCATTERING,
 };
 enum sf_resolution { SF_RESOLUTION_FULL, SF_RESOLUTION_HALF, SF_RESOLUTION_QUARTER };
 enum sf_thick_placement { SF_PLACEMENT_EQUAL, SF_PLACEMENT_UNIFORM, SF_PLACEMENT_JITTERED };
@@ -355,6 +357,24 @@ struct sf_mega_settings {
     float shininess;    /* exponent of the lobe */
     float soft;         /* m before the scene in which smoke fades; 0: the largest radius at birth */
 };
+/* Of lit and lit-scattering. */
+struct sf_lit_settings {
+    float relief;       /* 0: lit as balls; 1: by the atlas's normals; between: a mix */
+    float wrap;         /* 0..1: how far light reaches round a puff */
+    float translucency; /* strength of the light from behind: 1 takes in as much of it as isotropic smoke */
+    float halo;         /* of lit: how much of it the middle of a puff takes away, as an exponent */
+    float blend;        /* 0: covers what is behind; 1: adds to it */
+    int32_t ramp;       /* enum sf_lit_ramp: what the scene's ramp runs over */
+};
+enum sf_lit_ramp { SF_LIT_RAMP_LIFE, SF_LIT_RAMP_INTENSITY };
+struct sf_scattering_settings {
+    int32_t steps;     /* of a ray through the height field, at most */
+    int32_t steps_min; /* at least, or `steps` where that is less */
+    int32_t more;      /* enum sf_scattering_more: which pixels have more of them */
+    float absorption;  /* times the medium's extinction in the height field */
+    float dampening;   /* 1/particle: of the light, by the number of particles */
+};
+enum sf_scattering_more { SF_SCATTERING_MORE_GRAZING, SF_SCATTERING_MORE_FACING };
 
 struct sf_scene {
     const char *path; /* where it came from */
@@ -395,6 +415,8 @@ struct sf_scene {
     struct sf_average_settings average;
     struct sf_extent_settings extent;
     struct sf_volumetric_settings volumetric;
+    struct sf_lit_settings lit;
+    struct sf_scattering_settings scattering;
     /* The values as they were given, before directions are normalised, emitters take the medium's extinction, and files
      * are read: what controls show. NULL in a scene that was not loaded. */
     const struct sf_scene *stated;

@@ -218,7 +218,47 @@ static const struct sf_param soft_rows[] = {
                "of the fade of soft-contrast: 1 is linear, more is steeper in the middle")},
 };
 static const struct sf_param_group soft_group =
-    GROUP("soft", struct sf_soft_settings, soft_rows, "The methods soft and soft-contrast.");
+    GROUP("soft", struct sf_soft_settings, soft_rows,
+          "The methods soft and soft-contrast; of the distance also lit and lit-scattering.");
+
+static const char *const lit_ramps[] = {"life", "intensity", NULL};
+static const struct sf_param lit_rows[] = {
+    {ROW_FLOAT("relief", struct sf_lit_settings, relief, 0.35, 0, 1, "",
+               "how much of the atlas's normals there is in the light; 0: puffs are lit as balls")},
+    {ROW_FLOAT("wrap", struct sf_lit_settings, wrap, 0.6, 0, 1, "",
+               "how far light reaches round a puff: 0 to where it grazes, 1 to the far side")},
+    {ROW_FLOAT("translucency", struct sf_lit_settings, translucency, 0.5, 0, 100, "",
+               "strength of light that comes through from behind")},
+    {ROW_FLOAT("halo", struct sf_lit_settings, halo, 1.5, 0, 32, "",
+               "how much darker than its rim the middle of a puff is in light from behind (lit only)")},
+    {ROW_FLOAT("blend", struct sf_lit_settings, blend, 0, 0, 1, "",
+               "0: smoke covers what is behind it; 1: it adds its light; between: a mix")},
+    {ROW_ENUM(
+         "ramp", struct sf_lit_settings, ramp, lit_ramps, SF_LIT_RAMP_LIFE,
+         "what the scene's ramp runs over: a particle's life, or how much of the lights' full strength a pixel gets"),
+     .rebuild = SF_REBUILD_GRAPH},
+};
+static const struct sf_param_group lit_group =
+    GROUP("lit", struct sf_lit_settings, lit_rows,
+          "The methods lit and lit-scattering, billboards lit for each pixel by the normals of the scene's atlas.");
+
+static const char *const mores[] = {"grazing", "facing", NULL};
+static const struct sf_param scattering_rows[] = {
+    {ROW_INT("steps", struct sf_scattering_settings, steps, 8, 1, 256, "",
+             "samples along the ray to a light through a puff's heights, at most")},
+    {ROW_INT("steps_min", struct sf_scattering_settings, steps_min, 2, 1, 256, "",
+             "the same at least; steps where that is less")},
+    {ROW_ENUM("more", struct sf_scattering_settings, more, mores, SF_SCATTERING_MORE_GRAZING,
+              "which pixels have more of them: those whose normal turns away from the eye, or towards it"),
+     .rebuild = SF_REBUILD_GRAPH},
+    {ROW_FLOAT("absorption", struct sf_scattering_settings, absorption, 1, 0, 100, "",
+               "multiplies the extinction of what stands between a pixel and a light within its puff")},
+    {ROW_FLOAT("dampening", struct sf_scattering_settings, dampening, 0, 0, 1, "1/particle",
+               "dims all lights by 1 / (1 + dampening particles): a substitute for billboard.self_shadow")},
+};
+static const struct sf_param_group scattering_group =
+    GROUP("scattering", struct sf_scattering_settings, scattering_rows,
+          "The method lit-scattering alone: light through a puff's height field.");
 
 static const char *const mega_noises[] = {"world", "screen", NULL};
 static const struct sf_param mega_rows[] = {
@@ -298,8 +338,9 @@ static const struct sf_param_group volumetric_group =
     .key = k, .type = SF_PARAM_OBJECT, .offset = offsetof(struct sf_scene, f), .group = &of, .unit = "", .doc = text
 
 static const char *const methods[] = {
-    "none",      "thick", "thick-larsson",   "reference",      "hard",       "soft", "soft-contrast",
-    "spherical", "mega",  "average-density", "density-extent", "volumetric", NULL};
+    "none",           "thick",         "thick-larsson", "reference",      "hard",
+    "soft",           "soft-contrast", "spherical",     "mega",           "average-density",
+    "density-extent", "volumetric",    "lit",           "lit-scattering", NULL};
 static const struct sf_param scene_rows[] = {
     {ROW_OBJECT("camera", camera, sf_scene_camera_group, "the eye")},
     {ROW_LIST("lights", struct sf_scene, lights, light_count, sf_scene_light_group, 0, SF_LIGHTS_MAX, "lamps")},
@@ -332,6 +373,8 @@ static const struct sf_param scene_rows[] = {
     {ROW_OBJECT("average_density", average, average_group, "the method average-density")},
     {ROW_OBJECT("density_extent", extent, extent_group, "the method density-extent")},
     {ROW_OBJECT("volumetric", volumetric, volumetric_group, "the method volumetric")},
+    {ROW_OBJECT("lit", lit, lit_group, "the methods lit and lit-scattering")},
+    {ROW_OBJECT("scattering", scattering, scattering_group, "the method lit-scattering")},
 };
 const struct sf_param_group sf_scene_group =
     GROUP("scene", struct sf_scene, scene_rows, "The outermost object of a scene file.");

@@ -115,7 +115,7 @@ void sf_texels_rgba8(const struct sf_texture *texture, enum sf_texels_plane plan
 
         whole_texel(&scaling, i % size, i / size, values);
         for (int c = 0; c < 4; c++)
-            texels[c] = byte_of(plane == SF_TEXELS_SHAPE && c < 3 ? 0.5 * values[c] + 0.5 : values[c]);
+            texels[c] = byte_of(plane == SF_TEXELS_SHAPE && c < 3 ? (127 * values[c] + 128) / 255 : values[c]);
     }
 }
 

@@ -12,7 +12,7 @@ enum sf_texels_plane {
 };
 
 /* Tile number `tile`, brought to `size` by `size` texels: the mean over a texel where there are fewer of them, linear
- * between where there are more; [size][size][4], row 0 on top. In 8 bits (RGBA8_UNORM) normals are (n + 1) / 2, and values
+ * between where there are more; [size][size][4], row 0 on top. In 8 bits (RGBA8_UNORM) normals are (127 n + 128) / 255, and values
  * above 1 are 1; in 16-bit floats (RGBA16F) all is as it is. Normals are unit. */
 void sf_texels_rgba8(const struct sf_texture *texture, enum sf_texels_plane plane, uint32_t tile, uint32_t size,
                      uint8_t *texels);

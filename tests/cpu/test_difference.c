@@ -581,7 +581,9 @@ static void test_every_row_has_the_bits_that_it_needs(void **state)
                   {"all", "mega", "method=mega"},
                   {"all", "average_density", "method=average-density"},
                   {"all", "density_extent", "method=density-extent"},
-                  {"all", "volumetric", "method=volumetric"}};
+                  {"all", "volumetric", "method=volumetric"},
+                  {"all", "lit", "method=lit"},
+                  {"all", "scattering", "method=lit-scattering"}};
 
     (void)state;
     write_panorama();

@@ -168,7 +168,7 @@ static void test_faults(void **state)
         {"{\"atlas\":{\"type\":\"made\",\"kind\":\"turbulance\"}}", "did you mean turbulence?"},
         {"{\"method\":\"thik\"}",
          "/method: 'thik' is not one of none, thick, thick-larsson, reference, hard, soft, soft-contrast, "
-         "spherical, mega, average-density, density-extent, volumetric, did you mean thick?"},
+         "spherical, mega, average-density, density-extent, volumetric, lit, lit-scattering, did you mean thick?"},
         {"{\"sim\":{\"capacity\":1048577}}", "/sim/capacity: 1048577 is out of range: 1 to 1048576 particles"},
         {"{\"sim\":{\"capacity\":1},\"emitters\":[{\"type\":\"list\",\"particles\":[{\"centre\":[0,0,0],\"radius\":1},{"
          "\"centre\":[0,0,0],\"radius\":1}]}]}",

@@ -210,18 +210,20 @@ static const struct sf_control *find_control(const struct sf_control *controls, 
     return NULL;
 }
 
-/* The method's own group, or that of the method that it is a kind of: "thick" for "thick-larsson". */
+/* The method's own group, of its name, or of what is behind the dash in it ("larsson" for "thick-larsson"), or that of the
+ * method that it is a kind of ("thick"). */
 static const struct sf_control *find_quality(const struct sf_control *controls, uint32_t count, const char *method,
                                              const char *key)
 {
+    const char *dash = strchr(method, '-');
     const struct sf_control *control;
     char path[256];
 
-    snprintf(path, sizeof path, "%s.%s", method, key);
+    snprintf(path, sizeof path, "%s.%s", dash ? dash + 1 : method, key);
     control = find_control(controls, count, path);
-    if (control)
+    if (control || !dash)
         return control;
-    snprintf(path, sizeof path, "%.*s.%s", (int)strcspn(method, "-"), method, key);
+    snprintf(path, sizeof path, "%.*s.%s", (int)(dash - method), method, key);
     return find_control(controls, count, path);
 }
 
