@@ -15,7 +15,7 @@ struct sf_billboard_push {
     SF_FLOAT(ambient);
     SF_FLOAT(near_fade); /* radii before the near plane in which a flat billboard fades */
     SF_VEC4(own);        /* the method's settings, as its shader has them */
-    SF_VEC4(more[2]);    /* more of them, for shaders that read them here */
+    SF_VEC4(lit[2]);     /* what lit smoke has beyond that */
 };
 
 /* A particle as it is drawn, back to front. A view's coordinates are x right, y up, z view depth. */

@@ -13,7 +13,8 @@ struct assets {
 /* Which channels the scene's method reads: bits of enum sf_texture_channels. */
 static uint32_t needs(const struct sf_scene *scene)
 {
-    (void)scene;
+    if (scene->method == SF_METHOD_LIT)
+        return SF_TEXTURE_ALPHA | SF_TEXTURE_NORMAL;
     return SF_TEXTURE_ALPHA | SF_TEXTURE_NORMAL | SF_TEXTURE_HEIGHT;
 }
 

@@ -10,7 +10,7 @@ void sf_lit_fill(const struct sf_scene *scene, struct sf_billboard_push *push)
     push->own[1] = lit->blend;
     push->own[2] = lit->wrap;
     push->own[3] = lit->translucency;
-    push->more[0][0] = lit->relief;
+    push->lit[0][0] = lit->relief;
 }
 
 void sf_lit_update(const struct sf_method_frame *frame, void *state)
@@ -19,7 +19,7 @@ void sf_lit_update(const struct sf_method_frame *frame, void *state)
 
     sf_billboard_update(frame, billboards);
     sf_lit_fill(frame->scene, &billboards->push);
-    billboards->push.more[0][1] = frame->scene->lit.halo;
+    billboards->push.lit[0][1] = frame->scene->lit.halo;
 }
 
 enum sf_status sf_lit_draw(struct sf_method_frame *frame, void *state, struct sf_billboard_look look, bool counted,
@@ -35,7 +35,8 @@ enum sf_status sf_lit_draw(struct sf_method_frame *frame, void *state, struct sf
     look.uses = uses;
     look.use_count = SF_ATLAS_USES + counted;
     look.constants[0] = scene->light_count;
-    look.constants[1] = sf_thick_positional(scene);
+    for (uint32_t i = 0; i < scene->light_count; i++)
+        look.constants[1] |= (uint32_t)scene->lights[i].kind << (2 * i);
     look.constants[2] = scene->lit.ramp == SF_LIT_RAMP_INTENSITY && scene->ramp_count > 0;
     return sf_billboard_view(frame, state, &look, log);
 }

@@ -8,11 +8,11 @@ void sf_scattering_update(const struct sf_method_frame *frame, void *state)
 
     sf_billboard_update(frame, billboards);
     sf_lit_fill(frame->scene, &billboards->push);
-    billboards->push.more[0][1] = scattering->absorption;
-    billboards->push.more[0][2] = scattering->dampening;
-    billboards->push.more[1][0] =
+    billboards->push.lit[0][1] = scattering->absorption;
+    billboards->push.lit[0][2] = scattering->dampening;
+    billboards->push.lit[1][0] =
         (float)(scattering->steps_min < scattering->steps ? scattering->steps_min : scattering->steps);
-    billboards->push.more[1][1] = (float)scattering->steps;
+    billboards->push.lit[1][1] = (float)scattering->steps;
 }
 
 enum sf_status sf_scattering_view(struct sf_method_frame *frame, void *state, const struct sf_log *log)
