@@ -9,7 +9,7 @@
 #include "lib/phase.glsl"
 
 layout(constant_id = 2) const uint LIGHTS = 1u;
-layout(constant_id = 3) const uint POSITIONAL = 1u; // 0: all lights are directional
+layout(constant_id = 3) const uint KINDS = 0u;      // of the lights, two bits each
 layout(constant_id = 4) const uint RAMP = 0u;       // 1: the scene's ramp runs over the light's intensity, and not over life
 layout(set = 0, binding = 0, std140) uniform Frame { sf_gpu_frame frame; };
 layout(location = 7) flat in vec4 turn; // as sf_billboard has them
@@ -64,15 +64,11 @@ lit_puff read_puff()
 // distances at once: 1 / (d^2 + r^2 / 3) is 1 / d^2 from afar, and its mean over the ball, 3 / r^2, at the middle.
 vec3 irradiance_of(uint number, vec3 place, out vec3 to_light)
 {
-    if (POSITIONAL == 0u) {
-        to_light = -frame.lights[number].direction.xyz;
-        return frame.lights[number].color.rgb;
-    }
-    vec3 irradiance = light_irradiance(frame.lights[number], place, to_light);
+    uint kind = KINDS >> (2u * number) & 3u;
+    vec3 irradiance = light_irradiance_of(kind, frame.lights[number], place, to_light);
     vec3 apart = frame.lights[number].position.xyz - place;
     float square = dot(apart, apart);
-    bool stands = uint(frame.lights[number].position.w) != SF_LIGHT_KIND_DIRECTIONAL;
-    return irradiance * (stands ? square / (square + 0.333333333 * sphere.w * sphere.w) : 1.0);
+    return irradiance * (kind != SF_LIGHT_KIND_DIRECTIONAL ? square / (square + 0.333333333 * sphere.w * sphere.w) : 1.0);
 }
 
 // Wrap-around lighting (Reis's equations 5.2.3 and 5.2.4): (N . L) scale + bias with scale = 1 / (1 + w) and bias = w / (1 + w). Divided by

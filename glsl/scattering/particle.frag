@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 // Lit smoke with scattering through its height field (METHODS B10; Reis 2008, "More realistic scattering"): from the pixel's place on the field a ray goes to
 // each light, and what matter it meets dims that light. A tile's matter fills |z| < height: the far half of a puff is taken to be as the near one.
 #include "lit/puff.glsl"
@@ -22,7 +23,7 @@ float matter_along(lit_puff puff, vec3 way, uint steps)
     vec3 from = vec3(clamp(puff.at.xy, -1.0, 1.0), puff.height);
     vec3 reach = (1.0 - from * sign(way)) / max(abs(way), 1e-6); // to the sides of the box round the field
     float step_length = min(min(reach.x, reach.y), reach.z) / float(max(steps, 1u));
-    float rise = abs(way.z) * step_length, matter = 0.0;
+    float rise = max(abs(way.z) * step_length, 1e-3), matter = 0.0;
     int side = textureSize(atlas_shape, 0).x;
     for (uint i = 0u; i < steps; i++) {
         vec3 at = from + (float(i) + 0.5) * step_length * way;
@@ -30,7 +31,7 @@ float matter_along(lit_puff puff, vec3 way, uint steps)
         float height = texelFetch(atlas_shape, ivec3(texel, int(puff.at.z)), 0).w;
         // The part of the step that lies within: exact where the field is level.
         float inside = min(height, abs(at.z) + 0.5 * rise) - max(-height, abs(at.z) - 0.5 * rise);
-        matter += clamp(inside / max(rise, 1e-6), 0.0, 1.0);
+        matter += clamp(inside / rise, 0.0, 1.0);
     }
     return matter * step_length;
 }
@@ -42,7 +43,7 @@ void main()
     uint steps = steps_at(puff);
     float absorption = push.more[0].y * sphere.w * light.w;
     float damping = 1.0 / (1.0 + push.more[0].z * float(counts.live));
-    for (uint i = 0u; i < LIGHTS; i++) {
+    [[unroll]] for (uint i = 0u; i < LIGHTS; i++) {
         vec3 to_light;
         vec3 irradiance = irradiance_of(i, puff.place, to_light);
         vec3 way = vec3(into_tile(vec2(dot(to_light, puff.right), dot(to_light, puff.up))), -dot(to_light, frame.forward.xyz));

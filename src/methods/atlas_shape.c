@@ -16,6 +16,8 @@ static uint32_t needs(const struct sf_scene *scene)
     if (scene->method == SF_METHOD_EXTENT)
         return SF_TEXTURE_ALPHA | (scene->extent.lighting > 0 ? SF_TEXTURE_NORMAL : 0u) |
                (scene->extent.deviation > 0 ? SF_TEXTURE_HEIGHT : 0u);
+    if (scene->method == SF_METHOD_LIT)
+        return SF_TEXTURE_ALPHA | SF_TEXTURE_NORMAL;
     return SF_TEXTURE_ALPHA | SF_TEXTURE_NORMAL | SF_TEXTURE_HEIGHT;
 }
 

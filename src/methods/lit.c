@@ -35,7 +35,8 @@ enum sf_status sf_lit_draw(struct sf_method_frame *frame, void *state, struct sf
     look.uses = uses;
     look.use_count = SF_ATLAS_USES + counted;
     look.constants[0] = scene->light_count;
-    look.constants[1] = sf_thick_positional(scene);
+    for (uint32_t i = 0; i < scene->light_count; i++)
+        look.constants[1] |= (uint32_t)scene->lights[i].kind << (2 * i);
     look.constants[2] = scene->lit.ramp == SF_LIT_RAMP_INTENSITY && scene->ramp_count > 0;
     return sf_billboard_view(frame, state, &look, log);
 }

@@ -246,7 +246,7 @@ static const char *const mores[] = {"grazing", "facing", NULL};
 static const struct sf_param scattering_rows[] = {
     {ROW_INT("steps", struct sf_scattering_settings, steps, 8, 1, 256, "",
              "samples along the ray to a light through a puff's heights, at most")},
-    {ROW_INT("steps_min", struct sf_scattering_settings, steps_min, 2, 1, 256, "",
+    {ROW_INT("steps_min", struct sf_scattering_settings, steps_min, 4, 1, 256, "",
              "the same at least; steps where that is less")},
     {ROW_ENUM("more", struct sf_scattering_settings, more, mores, SF_SCATTERING_MORE_GRAZING,
               "which pixels have more of them: those whose normal turns away from the eye, or towards it"),
