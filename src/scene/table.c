@@ -119,6 +119,16 @@ static const struct sf_param shadow_rows[] = {
 static const struct sf_param_group shadow_group =
     GROUP("shadow", struct sf_shadow_settings, shadow_rows, "Shadows of the scene's objects.");
 
+static const char *const prepasses[] = {"none", "again", "equal", NULL};
+static const struct sf_param surface_rows[] = {
+    {ROW_ENUM("prepass", struct sf_surface_settings, prepass, prepasses, SF_PREPASS_NONE,
+              "the scene's depth: made with its colours; in passes before them, which then find their own again; or "
+              "before them, and colours are drawn where depth is equal. The picture is the same"),
+     .rebuild = SF_REBUILD_GRAPH},
+};
+static const struct sf_param_group surface_group =
+    GROUP("surfaces", struct sf_surface_settings, surface_rows, "How the scene's objects are drawn.");
+
 static const char *const placements[] = {"equal", "uniform", "jittered", NULL};
 static const char *const resolutions[] = {"full", "half", "quarter", NULL};
 static const struct sf_param thick_rows[] = {
@@ -244,6 +254,7 @@ static const struct sf_param scene_rows[] = {
      .rebuild = SF_REBUILD_GRAPH | SF_REBUILD_ASSETS}, /* methods have textures of their own */
     {ROW_OBJECT("sim", sim, sim_group, "the simulation")},
     {ROW_OBJECT("output", output, output_group, "pictures for the eye")},
+    {ROW_OBJECT("surfaces", surfaces, surface_group, "how objects are drawn")},
     {ROW_OBJECT("shadow", shadow, shadow_group, "shadows of objects")},
     {ROW_OBJECT("thick", thick, thick_group, "the methods thick and thick-larsson")},
     {ROW_OBJECT("larsson", larsson, larsson_group, "the method thick-larsson")},
