@@ -8,10 +8,10 @@
 /* A method of billboards: `view_of` draws its particles. */
 #define BILLBOARDS(name_of, doc_of, view_of)                                                                           \
     {                                                                                                                  \
-        .name = name_of, .doc = doc_of, .light = sf_billboard_light, .view = view_of, .update = sf_billboard_update,   \
-        .state_bytes = sizeof(struct sf_billboards), .create_assets = sf_thick_assets_create,                          \
-        .destroy_assets = sf_thick_assets_destroy, .same_assets = sf_thick_assets_same,                                \
-        .bind_assets = sf_thick_assets_bind,                                                                           \
+        .name = name_of, .doc = doc_of, .goal = 3, .light = sf_billboard_light, .view = view_of,                       \
+        .update = sf_billboard_update, .state_bytes = sizeof(struct sf_billboards),                                    \
+        .create_assets = sf_thick_assets_create, .destroy_assets = sf_thick_assets_destroy,                            \
+        .same_assets = sf_thick_assets_same, .bind_assets = sf_thick_assets_bind,                                      \
     }
 
 const struct sf_method_row sf_methods[] = {
@@ -22,6 +22,7 @@ const struct sf_method_row sf_methods[] = {
             .doc = "thick smoke with volumetric lighting: exact optical depth from lists of spheres, marched, any "
                    "number of clouds "
                    "behind each other (METHODS C1-C15)",
+            .goal = 2,
             .light = sf_thick_light,
             .view = sf_thick_view,
             .update = sf_thick_update,
@@ -37,6 +38,7 @@ const struct sf_method_row sf_methods[] = {
             .doc = "thick smoke the thesis's way: min/max depths from camera and lights, blurred, one interval a ray "
                    "marched "
                    "(METHODS C1-C9)",
+            .goal = 2,
             .light = sf_larsson_light,
             .view = sf_larsson_view,
             .update = sf_larsson_update,
