@@ -157,7 +157,7 @@ static enum sf_status measure(struct run *run)
 
 /* Frames a second. */
 struct rates {
-    double min, max, average;
+    double min, max, average, median;
 };
 
 static struct rates rates_of(struct result *result)
@@ -168,7 +168,10 @@ static struct rates rates_of(struct result *result)
     if (result->spans.count == 0)
         return (struct rates){0};
     slowest = result->spans.values[result->spans.count - 1]; /* they are sorted now */
-    return (struct rates){.min = 1 / (slowest * NS), .max = 1 / (s.min * NS), .average = 1 / (s.mean * NS)};
+    return (struct rates){.min = 1 / (slowest * NS),
+                          .max = 1 / (s.min * NS),
+                          .average = 1 / (s.mean * NS),
+                          .median = 1 / (s.median * NS)};
 }
 
 static void print_head(const struct run *run)
@@ -177,8 +180,8 @@ static void print_head(const struct run *run)
 
     printf("%s\n%s, %zu frames of %s, %u round%s\n%s, %s\n\n", suite->title, run->scene, run->frame_count,
            run->arguments->frames, run->rounds, run->rounds == 1 ? "" : "s", run->info.name, run->info.driver);
-    printf("%-*s %9s %8s %8s %8s %7s %7s  |", LABEL_COLUMNS, "frames a second", "", "min", "max", "average", "copies",
-           "ratio");
+    printf("%-*s %9s %8s %8s %8s %8s %7s %7s  |", LABEL_COLUMNS, "frames a second", "", "min", "max", "average",
+           "median", "copies", "ratio");
     for (const char *const *column = suite->columns; *column; column++)
         printf(" %9s %5s", *column, "ratio");
     printf("\n");
@@ -193,13 +196,14 @@ static void print_row(const struct run *run, size_t number, struct rates base)
     char size[24];
 
     snprintf(size, sizeof size, "%ux%u", result->width, result->height);
-    printf("%-*s %9s %8.2f %8.2f %8.2f %7.2f %7.2f  |", LABEL_COLUMNS, row->label, size, rates.min, rates.max,
-           rates.average, result->copy > 0 ? 1 / (rates.average * NS * result->copy) : 0, rates.average / base.average);
+    printf("%-*s %9s %8.2f %8.2f %8.2f %8.2f %7.2f %7.2f  |", LABEL_COLUMNS, row->label, size, rates.min, rates.max,
+           rates.average, rates.median, result->copy > 0 ? 1 / (rates.median * NS * result->copy) : 0,
+           rates.median / base.median);
     for (size_t i = 0; suite->columns[i]; i++) {
         if (row->published[i] > 0)
             printf(" %9g %5.2f", row->published[i], row->published[i] / suite->rows[0].published[i]);
         else
-            printf(" %9s %5s", "-", "");
+            printf(" %9s %5s", "-", "-");
     }
     printf("\n");
 }
@@ -213,7 +217,7 @@ static void print_table(const struct run *run)
         print_row(run, i, base);
     printf(
         "\nLeft of the line this run, by the device's clock; right of it what was published. Ratios are to %s, of the\n"
-        "averages and in each published column; copies: a frame's time in compute copies of its size.\n",
+        "medians and in each published column; copies: a median frame's time in compute copies of its size.\n",
         run->suite->base);
     for (const char *const *note = run->suite->notes; *note; note++)
         printf("%s\n", *note);
@@ -242,11 +246,11 @@ static json_t *row_json(const struct run *run, size_t number, struct rates base)
 
     for (size_t i = 0; i < SF_SUITE_SETS && row->sets[i]; i++)
         json_array_append_new(sets, json_string(row->sets[i]));
-    return json_pack("{s:s, s:o, s:s, s:i, s:i, s:I, s:{s:f, s:f, s:f}, s:f, s:f, s:o}", "row", row->label, "sets",
+    return json_pack("{s:s, s:o, s:s, s:i, s:i, s:I, s:{s:f, s:f, s:f, s:f}, s:f, s:f, s:o}", "row", row->label, "sets",
                      sets, "scene_hash", result->hash, "width", (int)result->width, "height", (int)result->height,
                      "samples", (json_int_t)result->spans.count, "fps", "min", rates.min, "max", rates.max, "average",
-                     rates.average, "ratio", rates.average / base.average, "compute_copies",
-                     result->copy > 0 ? 1 / (rates.average * NS * result->copy) : 0, "published",
+                     rates.average, "median", rates.median, "ratio", rates.median / base.median, "compute_copies",
+                     result->copy > 0 ? 1 / (rates.median * NS * result->copy) : 0, "published",
                      published_json(run->suite, row));
 }
 
