@@ -122,8 +122,7 @@ static const struct sf_param_group shadow_group =
 static const char *const prepasses[] = {"none", "again", "equal", NULL};
 static const struct sf_param surface_rows[] = {
     {ROW_ENUM("prepass", struct sf_surface_settings, prepass, prepasses, SF_PREPASS_NONE,
-              "the scene's depth: made with its colours; in passes before them, which then find their own again; or "
-              "before them, and colours are drawn where depth is equal. The picture is the same"),
+              "the scene's depth: beside its colours; before, and again with them; before, and they where it is equal"),
      .rebuild = SF_REBUILD_GRAPH},
 };
 static const struct sf_param_group surface_group =
