@@ -4,8 +4,8 @@
 // none), optical depth, transmittance.
 #include "shared/frame.h"
 
-layout(constant_id = 0) const uint SCALE = 1u;
-layout(constant_id = 1) const uint CHOICE = 0u; // as in over.frag
+layout(constant_id = 2) const uint SCALE = 1u;
+layout(constant_id = 3) const uint CHOICE = 0u; // as in thick/tile.vert
 layout(set = 0, binding = 2) uniform sampler2D smoke;
 layout(set = 0, binding = 3) uniform sampler2D smoke_depth;
 layout(set = 0, binding = 4) uniform sampler2D scene_depth;

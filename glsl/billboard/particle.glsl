@@ -7,8 +7,8 @@
 
 layout(set = 0, binding = 2) uniform sampler2D scene_depth; // of the smoke's size
 layout(set = 0, binding = 3) uniform sampler2D atlas;
-layout(location = 0) in vec4 ray; // as quad.vert has them
-layout(location = 1) in vec2 texel;
+layout(location = 0) noperspective in vec4 ray; // as quad.vert has them
+layout(location = 1) noperspective in vec2 texel;
 layout(location = 2) flat in vec4 sphere;
 layout(location = 3) flat in vec4 light;
 layout(location = 4) flat in vec4 settings;

@@ -12,8 +12,8 @@ layout(set = 0, binding = 0, std140) uniform Frame { sf_gpu_frame frame; };
 layout(set = 0, binding = 1, std430) readonly buffer Billboards { sf_billboard billboards[]; };
 layout(push_constant) uniform Push { sf_billboard_push push; };
 
-layout(location = 0) out vec4 ray;            // xy: view ray of unit depth; zw: from the centre, in the plane through it that faces the camera, radii
-layout(location = 1) out vec2 texel;          // of the detail atlas
+layout(location = 0) noperspective out vec4 ray;            // xy: view ray of unit depth; zw: from the centre, in the plane through it that faces the camera, radii
+layout(location = 1) noperspective out vec2 texel;          // of the detail atlas
 layout(location = 2) flat out vec4 sphere;    // centre (x, y, depth), radius
 layout(location = 3) flat out vec4 light;     // rgb: radiance for each unit of opacity; w: extinction, 1/m
 layout(location = 4) flat out vec4 settings;  // x: near plane; y: share that it leaves; z: detail; w: life

@@ -6,7 +6,7 @@
 
 layout(constant_id = 0) const uint MARGIN = 0u;
 layout(constant_id = 1) const uint TO_FRAME = 0u; // 1: the target has the frame's size
-layout(constant_id = 3) const uint CHOICE = 0u; // 0: all tiles; 1: those before whose smoke no surface stands; 2: the others
+layout(constant_id = 3) const uint CHOICE = 0u; // 0: all tiles; 1: those before whose smoke no surface stands; 2: the others; 3: all, taken up as those of 1 are
 layout(set = 0, binding = 0, std140) uniform Frame { sf_gpu_frame frame; };
 layout(set = 0, binding = 1, std430) readonly buffer Tiles { uint tiles[]; };
 layout(set = 0, binding = 8, std430) readonly buffer Mask { uint mask[]; };
@@ -26,6 +26,6 @@ void main()
     behind = vec4(dot(args.centre.xyz - frame.eye.xyz, frame.forward.xyz) + args.centre.w, 0.1 * max(args.centre.w, 1e-4),
                   1.0 / (float(push.scale) * vec2(push.width, push.height)));
     number = tile;
-    bool out_of_turn = CHOICE != 0u && (mask[tile] == SF_THICK_TILE_CUT) != (CHOICE == 2u);
+    bool out_of_turn = (CHOICE == 1u || CHOICE == 2u) && (mask[tile] == SF_THICK_TILE_CUT) != (CHOICE == 2u);
     gl_Position = out_of_turn ? vec4(2.0, 2.0, 0.0, 1.0) : vec4(pixel / size * 2.0 - 1.0, 0.5, 1.0);
 }

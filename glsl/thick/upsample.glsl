@@ -34,7 +34,7 @@ vec4 upsample(sampler2D image, vec2 frame_pixel)
 {
     if (SCALE == 1u)
         return texelFetch(image, ivec2(frame_pixel), 0);
-    return CHOICE == 1u ? upsample_plainly(image, frame_pixel) : upsample_carefully(image, frame_pixel);
+    return CHOICE == 1u || CHOICE == 3u ? upsample_plainly(image, frame_pixel) : upsample_carefully(image, frame_pixel);
 }
 
 #endif

@@ -11,8 +11,9 @@
 #include "files.h"
 #include "progress.h"
 #include "session.h"
+#include "suite.h"
 
-enum { CEILING_REPEATS = 15, IN_FLIGHT = 2, COUNTING_SIDE = 16 };
+enum { CEILING_REPEATS = 15, IN_FLIGHT = 2, COUNTING_SIDE = 16, SIDE = 800 };
 
 /* ---- samples ---- */
 
@@ -347,6 +348,8 @@ static enum sf_status check_arguments(const struct sf_arguments *arguments)
     const char *const files[] = {arguments->json_file, arguments->csv_file, arguments->trace_file};
     enum sf_status status = SF_OK;
 
+    if (arguments->quick)
+        return sf_console_fail(SF_ERROR_USAGE, "bench: --quick needs --suite");
     if (arguments->sizes)
         return sf_console_fail(SF_ERROR_USAGE, "bench: --sizes needs --sort");
     if (arguments->files.count == 0)
@@ -398,16 +401,22 @@ static void finish(struct sf_bench *bench)
     free(bench->frames);
 }
 
-enum sf_status sf_bench_run(const struct sf_arguments *arguments)
+enum sf_status sf_bench_run(const struct sf_arguments *given)
 {
+    struct sf_arguments own = *given;
+    const struct sf_arguments *arguments = &own;
     struct sf_bench bench = {.arguments = arguments};
     struct sf_baseline *baseline = NULL;
     struct sf_scene *scene = NULL;
     struct sf_device *device = NULL;
     enum sf_status status;
 
+    if (arguments->suite)
+        return sf_suite_run(arguments);
     if (arguments->sort)
         return sf_bench_sort_run(arguments);
+    if (own.size.width == 0)
+        own.size = (struct sf_argument_size){.width = SIDE, .height = SIDE};
     status = check_arguments(arguments);
     if (!status)
         status = sf_session_frames(arguments, &bench.frames, &bench.frame_count);
@@ -421,6 +430,7 @@ enum sf_status sf_bench_run(const struct sf_arguments *arguments)
         status = sf_session_size(arguments, device);
     if (!status) {
         sf_scene_describe(scene, &bench.scene);
+        bench.goal = sf_measure_goal(scene);
         sf_device_describe(device, &bench.device);
         snprintf(bench.hash, sizeof bench.hash, "%016llx", (unsigned long long)bench.scene.hash);
         status = measure(&bench, device, scene);

@@ -5,6 +5,8 @@
 #include "options.h"
 #include "sfumato/sfumato.h"
 
+struct json_t;
+
 struct sf_samples {
     double *values;
     size_t count, capacity;
@@ -39,6 +41,7 @@ struct sf_bench {
     uint32_t *frames;
     size_t frame_count; /* of the list; the samples have repeats times as many */
     struct sf_ceilings before, after;
+    double goal; /* of the method, in compute copies; 0: none */
     struct sf_bench_pass *passes;
     size_t pass_count, pass_capacity;
     struct sf_samples simulation, picture, sum; /* of the passes' times in a frame */
@@ -67,6 +70,9 @@ enum sf_status sf_bench_sort_run(const struct sf_arguments *arguments);
 void sf_report_print(struct sf_bench *bench);
 enum sf_status sf_report_json(struct sf_bench *bench, const char *path);
 enum sf_status sf_report_csv(const struct sf_bench *bench, const char *path);
+/* Writes `root` (a json_t, dumped with jansson's `flags`) and lets go of it; "-" is standard output. A NULL, or a member
+ * that is missing for want of memory, is SF_ERROR_MEMORY. */
+enum sf_status sf_report_write_json(struct json_t *root, size_t flags, const char *path);
 enum sf_status sf_report_trace(const struct sf_bench *bench, const char *path);
 
 /* ---- compare.c ---- */

@@ -2,6 +2,7 @@
 
 #include "bench.h"
 #include "capture.h"
+#include "suite.h"
 #include "verify/verify.h"
 #include "texture.h"
 #if defined(SF_VIEWER)
@@ -45,9 +46,12 @@ static const struct sf_option device_options[] = {
     {"no-cache", 0, SF_OPTION_FLAG, FIELD(no_cache), .doc = "leave the pipeline cache on disk alone"},
     {.name = NULL}};
 
-static const struct sf_option size_options[] = {
-    {"size", 's', SF_OPTION_SIZE, FIELD(size), .value = "WxH", .initial = "800x800", .doc = "pixels of the picture",
-     .min = 1, .max = SIDE_MAX},
+static const struct sf_option size_options[] = {{"size", 's', SF_OPTION_SIZE, FIELD(size), .value = "WxH",
+                                                 .initial = "800x800", .doc = "pixels of the picture", .min = 1,
+                                                 .max = SIDE_MAX},
+                                                {.name = NULL}};
+
+static const struct sf_option aov_options[] = {
     {"aovs", 0, SF_OPTION_FLAG, FIELD(aovs), .doc = "also the smoke alone: light, near, far, depth, transmittance"},
     {.name = NULL}};
 
@@ -108,6 +112,8 @@ static const struct sf_option view_options[] = {
     {.name = NULL}};
 
 static const struct sf_option bench_options[] = {
+    {"size", 's', SF_OPTION_SIZE, FIELD(size), .value = "WxH",
+     .doc = "pixels of the picture [800x800; a suite has its own]", .min = 1, .max = SIDE_MAX},
     {"frames", 'f', SF_OPTION_TEXT, FIELD(frames), .value = "LIST", .initial = "96-127",
      .doc = "frames that are timed"},
     {"warmup", 0, SF_OPTION_NUMBER, FIELD(warmup), .value = "N", .initial = "8",
@@ -120,6 +126,9 @@ static const struct sf_option bench_options[] = {
     {"compare", 0, SF_OPTION_TEXT, FIELD(compare_file), .value = "FILE",
      .doc = "print the ratio to an older --json report"},
     {"sort", 0, SF_OPTION_FLAG, FIELD(sort), .doc = "time the particles' sort instead; takes no SCENE"},
+    {"suite", 0, SF_OPTION_WORD, FIELD(suite), .value = "NAME", .doc = "a published table, run here; takes no SCENE",
+     .words = sf_suite_names},
+    {"quick", 0, SF_OPTION_FLAG, FIELD(quick), .doc = "a suite in small pictures, two frames each"},
     {"sizes", 0, SF_OPTION_TEXT, FIELD(sizes), .value = "LIST", .doc = "pairs to sort, such as 16384,65536"},
     {.name = NULL}};
 
@@ -211,17 +220,17 @@ static const struct sf_option params_options[] = {
     {"effects", 0, SF_OPTION_FLAG, FIELD(effects), .doc = "the keys of effect files, not of scenes"},
     {.name = NULL}};
 
-static const struct sf_option *const capture_tables[] = {capture_options, size_options,   scene_options,
+static const struct sf_option *const capture_tables[] = {capture_options, size_options,   aov_options, scene_options,
                                                          device_options,  common_options, NULL};
 static const struct sf_option *const view_tables[] = {view_options, scene_options, device_options, common_options,
                                                       NULL};
-static const struct sf_option *const bench_tables[] = {bench_options,  size_options,   scene_options,
+static const struct sf_option *const bench_tables[] = {bench_options,  aov_options,    scene_options,
                                                        device_options, common_options, NULL};
 static const struct sf_option *const verify_tables[] = {verify_options, device_options, common_options, NULL};
 static const struct sf_option *const texture_tables[] = {texture_options, common_options, NULL};
 static const struct sf_option *const devices_tables[] = {devices_options, common_options, NULL};
-static const struct sf_option *const graph_tables[] = {graph_options, size_options, scene_options, common_options,
-                                                       NULL};
+static const struct sf_option *const graph_tables[] = {graph_options, size_options,   aov_options,
+                                                       scene_options, common_options, NULL};
 static const struct sf_option *const params_tables[] = {params_options, common_options, NULL};
 static const struct sf_option *const check_tables[] = {scene_options, common_options, NULL};
 
@@ -231,7 +240,8 @@ static const char *const capture_notes[] = {
     "Without -o the files are named after the scene, in the current folder. Ctrl-C finishes the frame in hand.",
     "  sfumato capture scenes/plume.json -o out/plume.####.exr -o out/plume.####.png --frames 0-95", NULL};
 static const char *const bench_notes[] = {
-    "  sfumato bench scenes/plume.json --set thick.steps=24 --compare before.json", NULL};
+    "  sfumato bench scenes/plume.json --set thick.steps=24 --compare before.json",
+    "  sfumato bench --suite larsson-table1 --json table1.json", NULL};
 static const char *const verify_notes[] = {"Without SCENE: those of scenes/truth, here or beside the program.",
                                            "  sfumato verify scenes/truth/*.json --set thick.steps=32 --goals", NULL};
 static const char *const texture_notes[] = {
@@ -258,7 +268,7 @@ const struct sf_command sf_commands[] = {
      sf_view_run},
     {"capture", "SCENE", "Renders frames of a scene into EXR and PNG files.", capture_notes, capture_tables, 1, 1,
      sf_capture_run},
-    {"bench", "SCENE", "Times every pass of a scene's frames on the device.", bench_notes, bench_tables, 0, 1,
+    {"bench", "[SCENE]", "Times every pass of a scene's frames on the device.", bench_notes, bench_tables, 0, 1,
      sf_bench_run},
     {"verify", "[SCENE...]", "Says how wrong each method is, and how fast.", verify_notes, verify_tables, 0, SIZE_MAX,
      sf_verify_run},

@@ -12,6 +12,8 @@
 
 #include "console.h"
 
+enum { PATH_BYTES = 4096 };
+
 static char *folder_of(const char *path)
 {
     char *copy = strdup(path), *folder = copy ? strdup(dirname(copy)) : NULL;
@@ -53,6 +55,27 @@ enum sf_status sf_new_file_check(const char *path, bool overwrite)
     if (!status && !overwrite && lstat(path, &info) == 0)
         status = sf_console_fail(SF_ERROR_IO, "%s: exists (--overwrite replaces it)", path);
     return status;
+}
+
+char *sf_file_beside_program(const char *name)
+{
+    static const char *const places[] = {"", "/", "/../"};
+    char folder[PATH_BYTES], path[2 * PATH_BYTES];
+    ssize_t length = readlink("/proc/self/exe", folder, sizeof folder - 1); /* fails where the system does not tell */
+    char *slash;
+
+    folder[length > 0 ? length : 0] = '\0';
+    slash = strrchr(folder, '/');
+    if (slash)
+        *slash = '\0';
+    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+        if (i > 0 && !folder[0])
+            continue;
+        snprintf(path, sizeof path, "%s%s%s", i > 0 ? folder : "", places[i], name);
+        if (access(path, F_OK) == 0)
+            return strdup(path);
+    }
+    return NULL;
 }
 
 static bool write_all(int fd, const char *data, size_t size)

@@ -47,8 +47,8 @@ struct sf_arguments {
     /* bench */
     uint32_t warmup, repeats;
     const char *json_file, *csv_file, *trace_file, *compare_file;
-    bool sort;
-    const char *sizes;
+    bool sort, quick;
+    const char *sizes, *suite;
     /* verify */
     const char *methods; /* NULL: all that draw smoke */
     struct sf_argument_size time_size;

@@ -82,8 +82,11 @@ static void print_frame(struct sf_bench *bench)
         wall.median > 0 ? sum.median / wall.median * 100 : 0, pipelined.median > 0 ? 1e9 / pipelined.median : 0,
         bench->recorded_passes, record.median * NS_TO_MS);
     print_ceilings(bench);
-    printf("frame = %.2fx compute copy of an %ux%u RGBA32F image (goal 2.0x)\n", copy > 0 ? span.median / copy : 0,
+    printf("frame = %.2fx compute copy of an %ux%u RGBA32F image", copy > 0 ? span.median / copy : 0,
            bench->arguments->size.width, bench->arguments->size.height);
+    if (bench->goal > 0)
+        printf(" (goal of %s %.1fx: 800x800, half resolution, 512 particles)", bench->scene.method, bench->goal);
+    putchar('\n');
 }
 
 void sf_report_print(struct sf_bench *bench)
@@ -143,8 +146,7 @@ static json_t *passes_json(const struct sf_bench *bench)
     return list;
 }
 
-/* Writes `root` and lets go of it. A NULL, or a member that is missing for want of memory, is SF_ERROR_MEMORY. */
-static enum sf_status write_json(json_t *root, size_t flags, const char *path)
+enum sf_status sf_report_write_json(json_t *root, size_t flags, const char *path)
 {
     char *text = root ? json_dumps(root, flags | JSON_REAL_PRECISION(12)) : NULL;
     enum sf_status status;
@@ -191,7 +193,8 @@ enum sf_status sf_report_json(struct sf_bench *bench, const char *path)
     json_object_set_new(root, "record", statistics_json(sf_samples_describe(&bench->record)));
     json_object_set_new(root, "recorded_passes", json_integer(bench->recorded_passes));
     json_object_set_new(root, "frame_in_compute_copies", json_real(copy > 0 ? span.median / copy : 0));
-    return write_json(root, JSON_INDENT(2), path);
+    json_object_set_new(root, "goal_in_compute_copies", bench->goal > 0 ? json_real(bench->goal) : json_null());
+    return sf_report_write_json(root, JSON_INDENT(2), path);
 }
 
 /* ---- CSV ---- */
@@ -265,5 +268,6 @@ enum sf_status sf_report_trace(const struct sf_bench *bench, const char *path)
         json_array_append_new(
             list, span_json(name, "frame", 1, origin, bench->events[first].begin_ns, bench->events[i - 1].end_ns));
     }
-    return write_json(json_pack("{s:o, s:s}", "traceEvents", list, "displayTimeUnit", "ms"), JSON_COMPACT, path);
+    return sf_report_write_json(json_pack("{s:o, s:s}", "traceEvents", list, "displayTimeUnit", "ms"), JSON_COMPACT,
+                                path);
 }

@@ -52,6 +52,7 @@ void sf_billboard_update(const struct sf_method_frame *frame, void *state)
     uint32_t scale = sf_thick_scale(frame->scene);
 
     sf_larsson_update(frame, &billboards->thick);
+    billboards->thick.push.reach = scale > 1; /* of a smoke pixel at the edge, for the upsampling */
     billboards->push = (struct sf_billboard_push){
         .width = sf_divide_up(frame->width, scale),
         .height = sf_divide_up(frame->height, scale),
@@ -70,7 +71,8 @@ enum sf_status sf_billboard_light(struct sf_method_frame *frame, void *state, co
     struct sf_billboards *billboards = state;
 
     sf_billboard_update(frame, billboards);
-    if (frame->scene->thick.ground_shadow && frame->scene->light_count > 0)
+    /* Without objects there is nothing that the smoke could shadow. */
+    if (frame->scene->thick.ground_shadow && frame->scene->light_count > 0 && frame->scene->object_count > 0)
         return sf_larsson_light(frame, &billboards->thick, log);
     sf_thick_fit(frame, &billboards->thick, false);
     return SF_OK;
@@ -140,30 +142,6 @@ static void add_list(struct sf_method_frame *frame, struct sf_billboards *billbo
                                    .indirect_offset = SF_COUNTS_DISPATCH_OFFSET});
 }
 
-/* Where the smoke is drawn: its image, and the scene's depth at that size. */
-static void add_targets(struct sf_method_frame *frame, struct sf_billboards *billboards)
-{
-    uint32_t width = billboards->push.width, height = billboards->push.height;
-
-    /* A layer more is a rounding more: 32 bits. */
-    billboards->smoke = sf_thick_image(frame->graph, "smoke", SF_FORMAT_RGBA32F, width, height);
-    billboards->smoke_depth = frame->depth;
-    if (billboards->push.scale == 1)
-        return;
-    billboards->smoke_depth = sf_thick_image(frame->graph, "smoke.scene_depth", SF_FORMAT_R32F, width, height);
-    const struct sf_use uses[] = {
-        {.resource = frame->depth, .access = SF_ACCESS_SAMPLED, .binding = 0},
-        {.resource = billboards->smoke_depth, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_DISCARD},
-    };
-    add_pass(frame, billboards, uses, SF_COUNT(uses),
-             (struct sf_pass_desc){.name = "billboard.depth",
-                                   .kind = SF_PASS_RASTER,
-                                   .shader = "scene/screen.vert",
-                                   .fragment = "billboard/depth.frag",
-                                   .vertices = 3,
-                                   .instances = 1});
-}
-
 enum { DRAW_USES = 12 };
 
 static void add_draw(struct sf_method_frame *frame, struct sf_billboards *billboards,
@@ -173,7 +151,7 @@ static void add_draw(struct sf_method_frame *frame, struct sf_billboards *billbo
     struct sf_use uses[DRAW_USES] = {
         {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
         {.resource = billboards->list, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
-        {.resource = billboards->smoke_depth, .access = SF_ACCESS_SAMPLED, .binding = 2},
+        {.resource = billboards->thick.smoke_depth, .access = SF_ACCESS_SAMPLED, .binding = 2},
         {.resource = billboards->thick.atlas, .access = SF_ACCESS_SAMPLED, .binding = 3},
     };
     uint32_t count = 4;
@@ -196,30 +174,22 @@ static void add_draw(struct sf_method_frame *frame, struct sf_billboards *billbo
     add_pass(frame, billboards, uses, count, desc);
 }
 
-/* A pass over the rectangle of the frame that smoke may touch. */
-static void add_over(struct sf_method_frame *frame, struct sf_billboards *billboards, const struct sf_use *targets,
-                     uint32_t target_count, struct sf_pass_desc desc)
+/* How reduced smoke is taken up, as tile.vert has it, where the tiles are not drawn in two passes. */
+static uint32_t whole_choice(const struct sf_scene *scene)
 {
-    struct sf_use uses[DRAW_USES] = {
-        {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
-        {.resource = billboards->thick.args, .access = SF_ACCESS_UNIFORM, .binding = 1},
-        {.resource = billboards->smoke, .access = SF_ACCESS_SAMPLED, .binding = 2, .sampler = SF_SAMPLER_LINEAR},
-        {.resource = billboards->smoke_depth, .access = SF_ACCESS_SAMPLED, .binding = 3},
-        {.resource = frame->depth, .access = SF_ACCESS_SAMPLED, .binding = 4},
-    };
-    uint32_t count = 5;
+    return scene->billboard.upsample == SF_UPSAMPLE_PLAIN ? 3 : 0;
+}
 
-    for (uint32_t i = 0; i < target_count; i++)
-        uses[count++] = targets[i];
-    desc.kind = SF_PASS_RASTER;
-    desc.shader = "billboard/over.vert";
-    desc.constants[0] = billboards->push.scale;
-    desc.constants[1] = frame->scene->billboard.upsample;
-    desc.constant_count = 2;
-    desc.vertices = 4;
-    desc.instances = 1;
-    desc.raster.triangle_strip = true;
-    add_pass(frame, billboards, uses, count, desc);
+static void add_over(struct sf_method_frame *frame, const struct sf_billboards *billboards)
+{
+    uint32_t choice = whole_choice(frame->scene);
+
+    if (billboards->push.scale == 1 || choice != 0) {
+        sf_thick_over(frame, &billboards->thick, "billboard.over", "larsson/over.frag", choice);
+        return;
+    }
+    sf_thick_over(frame, &billboards->thick, "billboard.over_plain", "larsson/over.frag", 1);
+    sf_thick_over(frame, &billboards->thick, "billboard.over_cut", "larsson/over.frag", 2);
 }
 
 static void add_aovs(struct sf_method_frame *frame, struct sf_billboards *billboards)
@@ -237,8 +207,16 @@ static void add_aovs(struct sf_method_frame *frame, struct sf_billboards *billbo
                              .clear = {SF_DEPTH_FAR, SF_DEPTH_FAR, 1, 0}});
     frame->aov_radiance = sf_thick_image(frame->graph, "aov.smoke", SF_FORMAT_RGBA32F, frame->width, frame->height);
     frame->aov_depths = sf_thick_image(frame->graph, "aov.depths", SF_FORMAT_RGBA32F, frame->width, frame->height);
-    const struct sf_use targets[] = {
+    const struct sf_thick *thick = &billboards->thick;
+    const struct sf_use uses[] = {
+        {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
+        {.resource = thick->tiles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
+        {.resource = thick->smoke, .access = SF_ACCESS_SAMPLED, .binding = 2, .sampler = SF_SAMPLER_LINEAR},
+        {.resource = thick->smoke_depth, .access = SF_ACCESS_SAMPLED, .binding = 3},
+        {.resource = frame->depth, .access = SF_ACCESS_SAMPLED, .binding = 4},
         {.resource = extent, .access = SF_ACCESS_SAMPLED, .binding = 5},
+        {.resource = thick->args, .access = SF_ACCESS_STORAGE_READ, .binding = 7},
+        {.resource = thick->mask, .access = SF_ACCESS_STORAGE_READ, .binding = 8},
         {.resource = frame->aov_radiance, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_CLEAR},
         {.resource = frame->aov_depths,
          .access = SF_ACCESS_COLOR,
@@ -246,28 +224,27 @@ static void add_aovs(struct sf_method_frame *frame, struct sf_billboards *billbo
          .load = SF_LOAD_CLEAR,
          .clear = {SF_DEPTH_FAR, SF_DEPTH_FAR, 0, 1}},
     };
-    add_over(frame, billboards, targets, SF_COUNT(targets),
-             (struct sf_pass_desc){.name = "billboard.aovs", .fragment = "billboard/aovs.frag"});
+    sf_thick_tile_pass(frame, thick, uses, SF_COUNT(uses), true, whole_choice(frame->scene),
+                       (struct sf_pass_desc){.name = "billboard.aovs", .fragment = "billboard/aovs.frag"});
 }
 
 enum sf_status sf_billboard_view(struct sf_method_frame *frame, void *state, const struct sf_billboard_look *look,
                                  const struct sf_log *log)
 {
+    static const char *const tile_names[] = {"billboard.mark", "billboard.tiles"};
     struct sf_billboards *billboards = state;
-    const struct sf_use over = {
-        .resource = frame->color, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_KEEP};
+    struct sf_thick *thick = &billboards->thick;
+    /* A layer more is a rounding more: 32 bits. */
+    enum sf_status status = sf_thick_targets(frame, thick, SF_FORMAT_RGBA32F, log);
 
-    (void)log;
-    billboards->thick.atlas = sf_thick_atlas_resource(frame->graph);
+    if (status)
+        return status;
+    sf_thick_tiles(frame, thick, tile_names);
+    sf_thick_prepare(frame, thick, "billboard.prepare");
     add_list(frame, billboards, look->dims_itself);
-    add_targets(frame, billboards);
-    add_draw(
-        frame, billboards, look,
-        (struct sf_use){.resource = billboards->smoke, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_CLEAR});
-    add_over(frame, billboards, &over, 1,
-             (struct sf_pass_desc){.name = "billboard.over",
-                                   .fragment = "billboard/over.frag",
-                                   .raster = {.blend = {SF_BLEND_PREMULTIPLIED}}});
+    add_draw(frame, billboards, look,
+             (struct sf_use){.resource = thick->smoke, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_KEEP});
+    add_over(frame, billboards);
     if (frame->want_aovs)
         add_aovs(frame, billboards);
     return SF_OK;

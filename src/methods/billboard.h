@@ -1,6 +1,6 @@
 /* What the methods of billboards share (METHODS B1-B7, B9, B10): particles sorted back to front, each lit at its centre, drawn as
- * rectangles with premultiplied blending into an image of the smoke's size, which is laid over the scene. A method adds what
- * one fragment of a particle is: struct sf_billboard_look, and a shader. */
+ * rectangles with premultiplied blending into an image of the smoke's size, which is laid over the scene, both in the tiles alone that smoke touches. A
+ * method adds what one fragment of a particle is: struct sf_billboard_look, and a shader. */
 #ifndef SF_METHODS_BILLBOARD_H
 #define SF_METHODS_BILLBOARD_H
 
@@ -16,7 +16,6 @@ struct sf_billboards {
     struct sf_sort sort;
     struct sf_sort_tuning sort_tuning;
     sf_resource list; /* storage: struct sf_billboard[], back to front */
-    sf_resource smoke, smoke_depth;
 };
 
 /* How a method draws one particle. */

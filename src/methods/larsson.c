@@ -69,31 +69,6 @@ enum sf_status sf_larsson_light(struct sf_method_frame *frame, void *state, cons
     return SF_OK;
 }
 
-void sf_larsson_tiles(struct sf_method_frame *frame, struct sf_thick *thick)
-{
-    const struct sf_use mark[] = {
-        {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
-        {.resource = frame->particles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
-        {.resource = frame->counts, .access = SF_ACCESS_STORAGE_READ, .binding = 2},
-        {.resource = thick->mask, .access = SF_ACCESS_STORAGE_MODIFY, .binding = 3},
-    };
-    sf_thick_pass(frame, thick, mark, SF_COUNT(mark),
-                  (struct sf_pass_desc){.name = "larsson.mark",
-                                        .kind = SF_PASS_COMPUTE,
-                                        .shader = "larsson/mark.comp",
-                                        .indirect = frame->counts,
-                                        .indirect_offset = SF_COUNTS_DISPATCH_OFFSET});
-    const struct sf_use list[] = {
-        {.resource = thick->mask, .access = SF_ACCESS_STORAGE_READ, .binding = 0},
-        {.resource = thick->tiles, .access = SF_ACCESS_STORAGE_WRITE, .binding = 1},
-        {.resource = thick->args, .access = SF_ACCESS_STORAGE_MODIFY, .binding = 2},
-    };
-    sf_thick_pass(
-        frame, thick, list, SF_COUNT(list),
-        (struct sf_pass_desc){
-            .name = "larsson.tiles", .kind = SF_PASS_COMPUTE, .shader = "larsson/tiles.comp", .groups = {1, 1, 1}});
-}
-
 /* Empties the targets where smoke will be, and takes the scene's depth down. */
 static void add_prepare(struct sf_method_frame *frame, struct sf_thick *thick)
 {
@@ -168,35 +143,6 @@ static void add_march(struct sf_method_frame *frame, struct sf_thick *thick)
     sf_thick_probe(frame, thick, uses, SF_COUNT(uses), march);
 }
 
-/* `choice` as in tile.vert. */
-static void add_over(struct sf_method_frame *frame, struct sf_thick *thick, const char *fragment, const char *name,
-                     uint32_t choice)
-{
-    const struct sf_use uses[] = {
-        {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
-        {.resource = thick->tiles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
-        {.resource = thick->smoke, .access = SF_ACCESS_SAMPLED, .binding = 2, .sampler = SF_SAMPLER_LINEAR},
-        {.resource = thick->smoke_depth, .access = SF_ACCESS_SAMPLED, .binding = 3},
-        {.resource = frame->depth, .access = SF_ACCESS_SAMPLED, .binding = 4},
-        {.resource = thick->args, .access = SF_ACCESS_STORAGE_READ, .binding = 7},
-        {.resource = thick->mask, .access = SF_ACCESS_STORAGE_READ, .binding = 8},
-        {.resource = frame->color, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_KEEP},
-    };
-    sf_thick_tile_pass(
-        frame, thick, uses, SF_COUNT(uses), true, choice,
-        (struct sf_pass_desc){.name = name, .fragment = fragment, .raster = {.blend = {SF_BLEND_PREMULTIPLIED}}});
-}
-
-void sf_larsson_over(struct sf_method_frame *frame, struct sf_thick *thick, const char *fragment)
-{
-    if (thick->push.scale > 1) {
-        add_over(frame, thick, fragment, "larsson.over_plain", 1);
-        add_over(frame, thick, fragment, "larsson.over_cut", 2);
-    } else {
-        add_over(frame, thick, fragment, "larsson.over", 0);
-    }
-}
-
 static void add_aovs(struct sf_method_frame *frame, struct sf_thick *thick)
 {
     frame->aov_radiance = sf_thick_image(frame->graph, "aov.smoke", SF_FORMAT_RGBA16F, frame->width, frame->height);
@@ -227,12 +173,13 @@ enum sf_status sf_larsson_view(struct sf_method_frame *frame, void *state, const
     struct sf_thick *thick = state;
     struct sf_graph *graph = frame->graph;
     uint32_t width = thick->push.width, height = thick->push.height;
-    enum sf_status status = sf_thick_targets(frame, thick, log);
+    enum sf_status status = sf_thick_targets(frame, thick, SF_FORMAT_RGBA16F, log);
 
     if (status)
         return status;
     thick->raw = sf_thick_image(graph, "camera.raw", SF_FORMAT_RGBA32F, width, height);
-    sf_larsson_tiles(frame, thick);
+    static const char *const tile_names[] = {"larsson.mark", "larsson.tiles"};
+    sf_thick_tiles(frame, thick, tile_names);
     add_prepare(frame, thick);
     add_camera(frame, thick, "larsson.camera", false);
     add_camera(frame, thick, "larsson.camera_cut", true);
@@ -243,7 +190,12 @@ enum sf_status sf_larsson_view(struct sf_method_frame *frame, void *state, const
     static const char *const names[] = {"larsson.blur_x", "larsson.blur_y"};
     sf_thick_blur(frame, thick, names, images, true, &thick->camera_blur, radius);
     add_march(frame, thick);
-    sf_larsson_over(frame, thick, "larsson/over.frag");
+    if (thick->push.scale > 1) {
+        sf_thick_over(frame, thick, "larsson.over_plain", "larsson/over.frag", 1);
+        sf_thick_over(frame, thick, "larsson.over_cut", "larsson/over.frag", 2);
+    } else {
+        sf_thick_over(frame, thick, "larsson.over", "larsson/over.frag", 0);
+    }
     if (frame->want_aovs)
         add_aovs(frame, thick);
     return SF_OK;

@@ -8,10 +8,4 @@ enum sf_status sf_larsson_light(struct sf_method_frame *frame, void *state, cons
 enum sf_status sf_larsson_view(struct sf_method_frame *frame, void *state, const struct sf_log *log);
 void sf_larsson_update(const struct sf_method_frame *frame, void *state);
 
-/* For methods that go the same way. The list of tiles that smoke may touch, spheres and `reach` pixels around them, in
- * order: thick->tiles, mask and args. */
-void sf_larsson_tiles(struct sf_method_frame *frame, struct sf_thick *thick);
-/* Lays thick->smoke over the frame by a fragment shader with the bindings of larsson/over.frag. */
-void sf_larsson_over(struct sf_method_frame *frame, struct sf_thick *thick, const char *fragment);
-
 #endif

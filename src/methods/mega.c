@@ -283,16 +283,22 @@ static void add_aovs(struct sf_method_frame *frame, struct sf_mega *mega)
 enum sf_status sf_mega_view(struct sf_method_frame *frame, void *state, const struct sf_log *log)
 {
     struct sf_mega *mega = state;
-    enum sf_status status = sf_thick_targets(frame, &mega->thick, log);
+    static const char *const tile_names[] = {"mega.mark", "mega.tiles"};
+    enum sf_status status = sf_thick_targets(frame, &mega->thick, SF_FORMAT_RGBA16F, log);
 
     if (status)
         return status;
-    sf_larsson_tiles(frame, &mega->thick);
+    sf_thick_tiles(frame, &mega->thick, tile_names);
     add_balls(frame, mega);
     add_shade(frame, mega);
     add_blur(frame, mega);
     add_displace(frame, mega);
-    sf_larsson_over(frame, &mega->thick, "mega/over.frag");
+    if (mega->thick.push.scale > 1) {
+        sf_thick_over(frame, &mega->thick, "mega.over_plain", "mega/over.frag", 1);
+        sf_thick_over(frame, &mega->thick, "mega.over_cut", "mega/over.frag", 2);
+    } else {
+        sf_thick_over(frame, &mega->thick, "mega.over", "mega/over.frag", 0);
+    }
     if (frame->want_aovs)
         add_aovs(frame, mega);
     return SF_OK;

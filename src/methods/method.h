@@ -44,6 +44,7 @@ struct sf_method_frame {
 struct sf_method_row {
     const char *name; /* "thick" */
     const char *doc;
+    double goal; /* see sf_measure_goal */
     /* Passes before the scene is shaded (what lights see), and after (what the camera sees, composited over `color`).
      * `state` is the method's own memory for push constants, alive as long as the graph. */
     enum sf_status (*light)(struct sf_method_frame *frame, void *state, const struct sf_log *log);

@@ -180,22 +180,6 @@ static void add_lists(struct sf_method_frame *frame, struct sf_thick *thick)
                                         .indirect_offset = SF_THICK_DISPATCH_TILES_OFFSET});
 }
 
-/* Empties the smoke's image where smoke will be, and takes the scene's depth down. */
-static void add_prepare(struct sf_method_frame *frame, struct sf_thick *thick)
-{
-    const struct sf_use uses[] = {
-        {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
-        {.resource = thick->tiles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
-        {.resource = frame->depth, .access = SF_ACCESS_SAMPLED, .binding = 2},
-        {.resource = thick->args, .access = SF_ACCESS_STORAGE_READ, .binding = 7},
-        {.resource = thick->mask, .access = SF_ACCESS_STORAGE_MODIFY, .binding = 8},
-        {.resource = thick->smoke, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_DISCARD},
-        {.resource = thick->smoke_depth, .access = SF_ACCESS_COLOR, .binding = 1, .load = SF_LOAD_DISCARD},
-    };
-    sf_thick_tile_pass(frame, thick, uses, SF_COUNT(uses), false, 0,
-                       (struct sf_pass_desc){.name = "thick.prepare", .fragment = "thick/prepare.frag"});
-}
-
 static void add_march(struct sf_method_frame *frame, struct sf_thick *thick)
 {
     const struct sf_thick_settings *settings = &frame->scene->thick;
@@ -308,7 +292,7 @@ static void add_aovs(struct sf_method_frame *frame, struct sf_thick *thick)
 enum sf_status sf_thick_view(struct sf_method_frame *frame, void *state, const struct sf_log *log)
 {
     struct sf_thick *thick = state;
-    enum sf_status status = sf_thick_targets(frame, thick, log);
+    enum sf_status status = sf_thick_targets(frame, thick, SF_FORMAT_RGBA16F, log);
 
     if (status)
         return status;
@@ -319,7 +303,7 @@ enum sf_status sf_thick_view(struct sf_method_frame *frame, void *state, const s
             "sim.capacity allows %u",
             TILE_SPHERES_MAX, thick->push.capacity);
     add_lists(frame, thick);
-    add_prepare(frame, thick);
+    sf_thick_prepare(frame, thick, "thick.prepare");
     add_march(frame, thick);
     if (thick->push.scale > 1 || frame->want_aovs)
         add_whole(frame, thick);

@@ -194,22 +194,80 @@ sf_resource sf_thick_atlas_resource(struct sf_graph *graph)
                                                          .outside = SF_ACCESS_SAMPLED});
 }
 
-enum sf_status sf_thick_targets(struct sf_method_frame *frame, struct sf_thick *thick, const struct sf_log *log)
+enum sf_status sf_thick_targets(struct sf_method_frame *frame, struct sf_thick *thick, enum sf_format format,
+                                const struct sf_log *log)
 {
     struct sf_graph *graph = frame->graph;
     uint32_t width = thick->push.width, height = thick->push.height;
     uint32_t tiles = thick->push.tiles_x * thick->push.tiles_y;
     if (tiles > SF_THICK_TILES_MAX)
         return sf_fail(log, SF_ERROR_USAGE,
-                       "thick: a smoke image of %ux%u has more than %d tiles; lower thick.resolution or the size",
-                       width, height, SF_THICK_TILES_MAX);
-    thick->smoke = sf_thick_image(graph, "smoke", SF_FORMAT_RGBA16F, width, height);
+                       "%s: a smoke image of %ux%u has more than %d tiles; lower thick.resolution or the size",
+                       sf_methods[frame->scene->method].name, width, height, SF_THICK_TILES_MAX);
+    thick->smoke = sf_thick_image(graph, "smoke", format, width, height);
     thick->smoke_depth = sf_thick_image(graph, "smoke.scene_depth", SF_FORMAT_R32F, width, height);
     thick->atlas = sf_thick_atlas_resource(graph);
     thick->mask = sf_thick_buffer(graph, "thick.mask", 4ull * tiles);
     thick->tiles = sf_thick_buffer(graph, "thick.tile_list", 4ull * tiles);
     sf_thick_empty(frame, thick, "thick.unmark", thick->mask);
     return SF_OK;
+}
+
+void sf_thick_tiles(struct sf_method_frame *frame, struct sf_thick *thick, const char *const names[2])
+{
+    const struct sf_use mark[] = {
+        {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
+        {.resource = frame->particles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
+        {.resource = frame->counts, .access = SF_ACCESS_STORAGE_READ, .binding = 2},
+        {.resource = thick->mask, .access = SF_ACCESS_STORAGE_MODIFY, .binding = 3},
+    };
+    sf_thick_pass(frame, thick, mark, SF_COUNT(mark),
+                  (struct sf_pass_desc){.name = names[0],
+                                        .kind = SF_PASS_COMPUTE,
+                                        .shader = "larsson/mark.comp",
+                                        .indirect = frame->counts,
+                                        .indirect_offset = SF_COUNTS_DISPATCH_OFFSET});
+    const struct sf_use list[] = {
+        {.resource = thick->mask, .access = SF_ACCESS_STORAGE_READ, .binding = 0},
+        {.resource = thick->tiles, .access = SF_ACCESS_STORAGE_WRITE, .binding = 1},
+        {.resource = thick->args, .access = SF_ACCESS_STORAGE_MODIFY, .binding = 2},
+    };
+    sf_thick_pass(frame, thick, list, SF_COUNT(list),
+                  (struct sf_pass_desc){
+                      .name = names[1], .kind = SF_PASS_COMPUTE, .shader = "larsson/tiles.comp", .groups = {1, 1, 1}});
+}
+
+void sf_thick_prepare(struct sf_method_frame *frame, struct sf_thick *thick, const char *name)
+{
+    const struct sf_use uses[] = {
+        {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
+        {.resource = thick->tiles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
+        {.resource = frame->depth, .access = SF_ACCESS_SAMPLED, .binding = 2},
+        {.resource = thick->args, .access = SF_ACCESS_STORAGE_READ, .binding = 7},
+        {.resource = thick->mask, .access = SF_ACCESS_STORAGE_MODIFY, .binding = 8},
+        {.resource = thick->smoke, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_DISCARD},
+        {.resource = thick->smoke_depth, .access = SF_ACCESS_COLOR, .binding = 1, .load = SF_LOAD_DISCARD},
+    };
+    sf_thick_tile_pass(frame, thick, uses, SF_COUNT(uses), false, 0,
+                       (struct sf_pass_desc){.name = name, .fragment = "thick/prepare.frag"});
+}
+
+void sf_thick_over(struct sf_method_frame *frame, const struct sf_thick *thick, const char *name, const char *fragment,
+                   uint32_t choice)
+{
+    const struct sf_use uses[] = {
+        {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
+        {.resource = thick->tiles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
+        {.resource = thick->smoke, .access = SF_ACCESS_SAMPLED, .binding = 2, .sampler = SF_SAMPLER_LINEAR},
+        {.resource = thick->smoke_depth, .access = SF_ACCESS_SAMPLED, .binding = 3},
+        {.resource = frame->depth, .access = SF_ACCESS_SAMPLED, .binding = 4},
+        {.resource = thick->args, .access = SF_ACCESS_STORAGE_READ, .binding = 7},
+        {.resource = thick->mask, .access = SF_ACCESS_STORAGE_READ, .binding = 8},
+        {.resource = frame->color, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_KEEP},
+    };
+    sf_thick_tile_pass(
+        frame, thick, uses, SF_COUNT(uses), true, choice,
+        (struct sf_pass_desc){.name = name, .fragment = fragment, .raster = {.blend = {SF_BLEND_PREMULTIPLIED}}});
 }
 
 enum sf_status sf_thick_assets_create(struct sf_gpu *gpu, const struct sf_scene *scene, const struct sf_log *log,

@@ -1,4 +1,4 @@
-/* What the two methods of thick smoke share: thick.c and larsson.c. */
+/* What the two methods of thick smoke share, thick.c and larsson.c, and with them those of billboards. */
 #ifndef SF_METHODS_THICK_PARTS_H
 #define SF_METHODS_THICK_PARTS_H
 
@@ -53,9 +53,18 @@ void sf_thick_blur(struct sf_method_frame *frame, const struct sf_thick *thick, 
 /* The first pass of the lights' part: their views, fitted to the smoke; `around`: a light in the smoke looks all around.
  * Makes thick->args and frame->smoke_views. */
 void sf_thick_fit(struct sf_method_frame *frame, struct sf_thick *thick, bool around);
-/* The first steps of the camera's part: images of the smoke and of the reduced depth, the atlas. SF_ERROR_USAGE: too many
- * tiles. */
-enum sf_status sf_thick_targets(struct sf_method_frame *frame, struct sf_thick *thick, const struct sf_log *log);
+/* The first steps of the camera's part: images of the smoke, in `format`, and of the reduced depth, the atlas.
+ * SF_ERROR_USAGE: too many tiles. */
+enum sf_status sf_thick_targets(struct sf_method_frame *frame, struct sf_thick *thick, enum sf_format format,
+                                const struct sf_log *log);
+/* Lists the tiles that spheres may touch, in two passes of these names. */
+void sf_thick_tiles(struct sf_method_frame *frame, struct sf_thick *thick, const char *const names[2]);
+/* Empties the smoke's image where smoke will be, and takes the scene's depth down. */
+void sf_thick_prepare(struct sf_method_frame *frame, struct sf_thick *thick, const char *name);
+/* Lays the smoke's image over the frame by a fragment shader with the bindings of larsson/over.frag. `choice` as in
+ * tile.vert. */
+void sf_thick_over(struct sf_method_frame *frame, const struct sf_thick *thick, const char *name, const char *fragment,
+                   uint32_t choice);
 /* Fills a buffer of a word a tile with 0. */
 void sf_thick_empty(struct sf_method_frame *frame, const struct sf_thick *thick, const char *name, sf_resource buffer);
 

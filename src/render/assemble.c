@@ -1,5 +1,6 @@
 #include "render/assemble.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "shared/particle.h"
@@ -9,10 +10,15 @@ _Static_assert(sizeof(struct sf_particle_counts) == 96, "std430");
 _Static_assert(sizeof(struct sf_gpu_light_view) == 96, "std140");
 _Static_assert(sizeof(struct sf_flash_push) == 16, "push constants");
 
+/* What a round of passes over the scene's objects writes. */
+enum writes { BOTH, DEPTH, COLOR, WRITES };
+
 /* Resources that only this file needs. */
 struct parts {
     struct sf_assembly *assembly;
     sf_resource z;
+    enum writes writes;
+    bool equal; /* the colours of a round are drawn where z is that of the round before */
     uint32_t constants[SF_SHADE_CONSTANTS];
 };
 
@@ -88,7 +94,7 @@ static void declare_inputs(struct sf_assembly *assembly, const struct sf_assembl
 enum { SHADE_USES = 6 };
 
 /* Bindings 0-4 of glsl/scene/shade.glsl; the number of uses. */
-static uint32_t shade_uses(struct parts *parts, struct sf_use uses[SHADE_USES])
+static uint32_t shade_uses(const struct parts *parts, struct sf_use uses[SHADE_USES])
 {
     struct sf_assembly *assembly = parts->assembly;
     const struct sf_method_frame *method = &assembly->method;
@@ -108,122 +114,157 @@ static uint32_t shade_uses(struct parts *parts, struct sf_use uses[SHADE_USES])
     return SHADE_USES - 1;
 }
 
-/* The picture, the linear depth, and (for finite objects) the reversed z. */
-static uint32_t target_uses(const struct parts *parts, enum sf_load load, bool with_z, enum sf_load z_load,
-                            struct sf_use uses[3])
+enum { TARGET_USES = 3 };
+
+/* The picture, the linear depth, and (for finite objects) the reversed z; the number of uses. `first`: of the round, so
+ * that the targets hold nothing yet. */
+static uint32_t target_uses(const struct parts *parts, bool first, bool with_z, bool first_z,
+                            struct sf_use uses[TARGET_USES])
 {
     const struct sf_method_frame *method = &parts->assembly->method;
+    enum sf_load load = first ? SF_LOAD_DISCARD : SF_LOAD_KEEP;
+    uint32_t count = 0;
 
-    uses[0] = (struct sf_use){.resource = method->color, .access = SF_ACCESS_COLOR, .binding = 0, .load = load};
-    uses[1] = (struct sf_use){.resource = method->depth, .access = SF_ACCESS_COLOR, .binding = 1, .load = load};
-    uses[2] = (struct sf_use){.resource = parts->z, .access = SF_ACCESS_DEPTH, .load = z_load};
-    return with_z ? 3 : 2;
+    if (parts->writes != DEPTH)
+        uses[count++] = (struct sf_use){.resource = method->color, .access = SF_ACCESS_COLOR, .load = load};
+    if (parts->writes != COLOR) {
+        uses[count] =
+            (struct sf_use){.resource = method->depth, .access = SF_ACCESS_COLOR, .binding = count, .load = load};
+        count++;
+    }
+    if (with_z && parts->equal && parts->writes == COLOR)
+        uses[count++] = (struct sf_use){.resource = parts->z, .access = SF_ACCESS_DEPTH_READ};
+    else if (with_z)
+        uses[count++] = (struct sf_use){
+            .resource = parts->z, .access = SF_ACCESS_DEPTH, .load = first_z ? SF_LOAD_CLEAR : SF_LOAD_KEEP};
+    return count;
 }
 
-static void declare_sky(struct parts *parts)
+static enum sf_depth_test depth_test(const struct parts *parts)
 {
+    return parts->equal && parts->writes == COLOR ? SF_DEPTH_EQUAL : SF_DEPTH_GREATER_EQUAL;
+}
+
+/* A pass over objects of one kind: its name and fragment shader by what the round writes. */
+static void declare_objects(const struct parts *parts, const char *const names[2], const char *const fragments[WRITES],
+                            struct sf_pass_desc pass)
+{
+    pass.name = names[parts->writes == DEPTH];
+    pass.kind = SF_PASS_RASTER;
+    pass.fragment = fragments[parts->writes];
+    pass.constant_count = SF_SHADE_CONSTANTS;
+    memcpy(pass.constants, parts->constants, sizeof parts->constants);
+    sf_graph_pass(parts->assembly->graph, &pass);
+}
+
+static void declare_sky(const struct parts *parts)
+{
+    static const char *const names[] = {"scene.sky", "prepass.sky"};
+    static const char *const fragments[WRITES] = {"scene/sky.frag", "scene/sky_depth.frag", "scene/sky_color.frag"};
     struct sf_assembly *assembly = parts->assembly;
-    struct sf_use uses[SHADE_USES + 3];
+    struct sf_use uses[SHADE_USES + TARGET_USES];
     uint32_t count = shade_uses(parts, uses);
 
     uses[count++] = (struct sf_use){.resource = assembly->environment ? assembly->environment : blank(assembly),
                                     .access = SF_ACCESS_SAMPLED,
                                     .binding = 5,
                                     .sampler = assembly->environment ? SF_SAMPLER_LINEAR_REPEAT : SF_SAMPLER_NEAREST};
-    count += target_uses(parts, SF_LOAD_DISCARD, false, SF_LOAD_KEEP, &uses[count]);
-    struct sf_pass_desc pass = {.name = "scene.sky",
-                                .kind = SF_PASS_RASTER,
-                                .shader = "scene/sky.vert",
-                                .fragment = "scene/sky.frag",
-                                .uses = uses,
-                                .use_count = count,
-                                .constant_count = SF_SHADE_CONSTANTS,
-                                .vertices = 4,
-                                .instances = 1,
-                                .raster = {.triangle_strip = true}};
-    memcpy(pass.constants, parts->constants, sizeof parts->constants);
-    sf_graph_pass(assembly->graph, &pass);
+    count += target_uses(parts, true, false, false, &uses[count]);
+    declare_objects(parts, names, fragments,
+                    (struct sf_pass_desc){.shader = "scene/sky.vert",
+                                          .uses = uses,
+                                          .use_count = count,
+                                          .vertices = 4,
+                                          .instances = 1,
+                                          .raster = {.triangle_strip = true}});
 }
 
-static void declare_planes(struct parts *parts)
+static void declare_planes(const struct parts *parts)
 {
-    struct sf_use uses[SHADE_USES + 3];
+    static const char *const names[] = {"scene.planes", "prepass.planes"};
+    static const char *const fragments[WRITES] = {"scene/planes.frag", "scene/planes_depth.frag",
+                                                  "scene/planes_color.frag"};
+    struct sf_use uses[SHADE_USES + TARGET_USES];
     uint32_t count = shade_uses(parts, uses);
 
-    count += target_uses(parts, SF_LOAD_KEEP, false, SF_LOAD_KEEP, &uses[count]);
-    struct sf_pass_desc pass = {.name = "scene.planes",
-                                .kind = SF_PASS_RASTER,
-                                .shader = "scene/planes.vert",
-                                .fragment = "scene/planes.frag",
-                                .uses = uses,
-                                .use_count = count,
-                                .constant_count = SF_SHADE_CONSTANTS,
-                                .vertices = 4,
-                                .instances = parts->assembly->drawn.list.planes,
-                                .raster = {.triangle_strip = true}};
-    memcpy(pass.constants, parts->constants, sizeof parts->constants);
-    sf_graph_pass(parts->assembly->graph, &pass);
+    count += target_uses(parts, false, false, false, &uses[count]);
+    declare_objects(parts, names, fragments,
+                    (struct sf_pass_desc){.shader = "scene/planes.vert",
+                                          .uses = uses,
+                                          .use_count = count,
+                                          .vertices = 4,
+                                          .instances = parts->assembly->drawn.list.planes,
+                                          .raster = {.triangle_strip = true}});
 }
 
-static void declare_solids(struct parts *parts)
+static void declare_solids(const struct parts *parts)
 {
-    struct sf_use uses[SHADE_USES + 3];
+    static const char *const names[] = {"scene.solids", "prepass.solids"};
+    static const char *const fragments[WRITES] = {"scene/solids.frag", "scene/solids_depth.frag",
+                                                  "scene/solids_color.frag"};
+    struct sf_use uses[SHADE_USES + TARGET_USES];
     uint32_t count = shade_uses(parts, uses);
 
-    count += target_uses(parts, SF_LOAD_KEEP, true, SF_LOAD_CLEAR, &uses[count]);
-    struct sf_pass_desc pass = {.name = "scene.solids",
-                                .kind = SF_PASS_RASTER,
-                                .shader = "scene/solids.vert",
-                                .fragment = "scene/solids.frag",
-                                .uses = uses,
-                                .use_count = count,
-                                .constant_count = SF_SHADE_CONSTANTS,
-                                .vertices = 36,
-                                .instances = parts->assembly->drawn.list.solids,
-                                .raster = {.cull = SF_CULL_FRONT, .depth = SF_DEPTH_GREATER_EQUAL}};
-    memcpy(pass.constants, parts->constants, sizeof parts->constants);
-    sf_graph_pass(parts->assembly->graph, &pass);
+    count += target_uses(parts, false, true, true, &uses[count]);
+    declare_objects(parts, names, fragments,
+                    (struct sf_pass_desc){.shader = "scene/solids.vert",
+                                          .uses = uses,
+                                          .use_count = count,
+                                          .vertices = 36,
+                                          .instances = parts->assembly->drawn.list.solids,
+                                          .raster = {.cull = SF_CULL_FRONT, .depth = depth_test(parts)}});
 }
 
-static void declare_mesh(struct parts *parts, uint32_t number)
+static void declare_mesh(const struct parts *parts, uint32_t number)
 {
+    static const char *const fragments[WRITES] = {"scene/mesh.frag", "scene/mesh_depth.frag", "scene/mesh_color.frag"};
     struct sf_assembly *assembly = parts->assembly;
     uint32_t object = assembly->drawn.list.planes + assembly->drawn.list.solids + number;
     uint32_t mesh = assembly->drawn.scene->objects[assembly->drawn.list.from[object]].mesh;
     struct sf_mesh_push *push = &assembly->mesh_push[number];
-    struct sf_use uses[SHADE_USES + 5];
+    struct sf_use uses[SHADE_USES + 1 + TARGET_USES];
     uint32_t count = shade_uses(parts, uses);
-    char name[32] = "scene.mesh00";
+    char name[32], before[32];
 
     *push = (struct sf_mesh_push){.object = object,
                                   .first_index = assembly->drawn.meshes.first_index[mesh],
                                   .first_vertex = assembly->drawn.meshes.first_vertex[mesh]};
-    name[10] = (char)('0' + number / 10);
-    name[11] = (char)('0' + number % 10);
+    snprintf(name, sizeof name, "scene.mesh%02u", number);
+    snprintf(before, sizeof before, "prepass.mesh%02u", number);
+    const char *const names[] = {name, before};
     uses[count++] = (struct sf_use){.resource = assembly->vertices, .access = SF_ACCESS_STORAGE_READ, .binding = 5};
     uses[count++] = (struct sf_use){.resource = assembly->indices, .access = SF_ACCESS_STORAGE_READ, .binding = 6};
-    bool first = number == 0 && assembly->drawn.list.solids == 0;
-    count += target_uses(parts, SF_LOAD_KEEP, true, first ? SF_LOAD_CLEAR : SF_LOAD_KEEP, &uses[count]);
-    struct sf_pass_desc pass = {.name = name,
-                                .kind = SF_PASS_RASTER,
-                                .shader = "scene/mesh.vert",
-                                .fragment = "scene/mesh.frag",
-                                .uses = uses,
-                                .use_count = count,
-                                .constant_count = SF_SHADE_CONSTANTS,
-                                .push = push,
-                                .push_bytes = sizeof *push,
-                                .vertices = assembly->drawn.scene->meshes[mesh].index_count,
-                                .instances = 1,
-                                .raster = {.depth = SF_DEPTH_GREATER_EQUAL}};
-    memcpy(pass.constants, parts->constants, sizeof parts->constants);
-    sf_graph_pass(assembly->graph, &pass);
+    count += target_uses(parts, false, true, number == 0 && assembly->drawn.list.solids == 0, &uses[count]);
+    declare_objects(parts, names, fragments,
+                    (struct sf_pass_desc){.shader = "scene/mesh.vert",
+                                          .uses = uses,
+                                          .use_count = count,
+                                          .push = push,
+                                          .push_bytes = sizeof *push,
+                                          .vertices = assembly->drawn.scene->meshes[mesh].index_count,
+                                          .instances = 1,
+                                          .raster = {.depth = depth_test(parts)}});
+}
+
+/* All objects once. */
+static void declare_round(const struct parts *parts)
+{
+    const struct sf_assembly *assembly = parts->assembly;
+
+    declare_sky(parts);
+    if (assembly->drawn.list.planes > 0)
+        declare_planes(parts);
+    if (assembly->drawn.list.solids > 0)
+        declare_solids(parts);
+    for (uint32_t i = 0; i < assembly->drawn.list.meshes; i++)
+        declare_mesh(parts, i);
 }
 
 static void declare_scene(struct sf_assembly *assembly, bool shown)
 {
     struct parts parts = {.assembly = assembly};
     enum sf_format format = assembly->float_color ? SF_FORMAT_RGBA32F : SF_FORMAT_RGBA16F;
+    int32_t prepass = assembly->drawn.scene->surfaces.prepass;
 
     assembly->method.color = shown ? import_image(assembly->graph, "color", format, assembly->width, assembly->height)
                                    : frame_image(assembly, "color", format);
@@ -231,15 +272,18 @@ static void declare_scene(struct sf_assembly *assembly, bool shown)
     memcpy(parts.constants, assembly->drawn.constants, sizeof parts.constants);
     if (!assembly->method.smoke_map || !assembly->method.smoke_shadows)
         parts.constants[SF_SHADE_CASTS] = 0;
-    declare_sky(&parts);
-    if (assembly->drawn.list.planes > 0)
-        declare_planes(&parts);
-    if (assembly->drawn.list.solids + assembly->drawn.list.meshes > 0)
+    bool with_z = assembly->drawn.list.solids + assembly->drawn.list.meshes > 0;
+    if (with_z)
         parts.z = frame_image(assembly, "z", SF_FORMAT_D32F);
-    if (assembly->drawn.list.solids > 0)
-        declare_solids(&parts);
-    for (uint32_t i = 0; i < assembly->drawn.list.meshes; i++)
-        declare_mesh(&parts, i);
+    if (prepass != SF_PREPASS_NONE) {
+        parts.writes = DEPTH;
+        declare_round(&parts);
+        parts.writes = COLOR;
+        parts.equal = prepass == SF_PREPASS_EQUAL;
+        if (with_z && !parts.equal)
+            parts.z = frame_image(assembly, "z.again", SF_FORMAT_D32F);
+    }
+    declare_round(&parts);
 }
 
 /* Light over the whole picture, behind all that the method draws. */

@@ -4,6 +4,7 @@
 
 #include <stdlib.h>
 #include "base/hash.h"
+#include "methods/method.h"
 #include "sim/sort.h"
 
 enum {
@@ -23,6 +24,11 @@ struct probe {
     struct sf_plan *plan;
     struct sf_player *player;
 };
+
+double sf_measure_goal(const struct sf_scene *scene)
+{
+    return sf_methods[scene->method].goal;
+}
 
 static void close_probe(struct probe *probe)
 {

@@ -257,6 +257,7 @@ enum sf_method {
     SF_METHOD_LIT,
     SF_METHOD_SCATTERING,
 };
+enum sf_prepass { SF_PREPASS_NONE, SF_PREPASS_AGAIN, SF_PREPASS_EQUAL };
 enum sf_resolution { SF_RESOLUTION_FULL, SF_RESOLUTION_HALF, SF_RESOLUTION_QUARTER };
 enum sf_thick_placement { SF_PLACEMENT_EQUAL, SF_PLACEMENT_UNIFORM, SF_PLACEMENT_JITTERED };
 enum sf_tone { SF_TONE_LINEAR, SF_TONE_REINHARD, SF_TONE_ACES, SF_TONE_NEUTRAL };
@@ -271,6 +272,9 @@ struct sf_sim_settings {
 struct sf_output_settings {
     float exposure; /* stops, for PNG and window only */
     int32_t tone;
+};
+struct sf_surface_settings {
+    int32_t prepass; /* enum sf_prepass: how the scene's depth is made */
 };
 struct sf_shadow_settings {
     int32_t map_size; /* px: exponential shadow map of scene on scene and on smoke, per light */
@@ -405,6 +409,7 @@ struct sf_scene {
     int32_t method; /* enum sf_method */
     struct sf_sim_settings sim;
     struct sf_output_settings output;
+    struct sf_surface_settings surfaces;
     struct sf_shadow_settings shadow;
     struct sf_thick_settings thick;
     struct sf_larsson_settings larsson;

@@ -119,6 +119,15 @@ static const struct sf_param shadow_rows[] = {
 static const struct sf_param_group shadow_group =
     GROUP("shadow", struct sf_shadow_settings, shadow_rows, "Shadows of the scene's objects.");
 
+static const char *const prepasses[] = {"none", "again", "equal", NULL};
+static const struct sf_param surface_rows[] = {
+    {ROW_ENUM("prepass", struct sf_surface_settings, prepass, prepasses, SF_PREPASS_NONE,
+              "the scene's depth: beside its colours; before, and again with them; before, and they where it is equal"),
+     .rebuild = SF_REBUILD_GRAPH},
+};
+static const struct sf_param_group surface_group =
+    GROUP("surfaces", struct sf_surface_settings, surface_rows, "How the scene's objects are drawn.");
+
 static const char *const placements[] = {"equal", "uniform", "jittered", NULL};
 static const char *const resolutions[] = {"full", "half", "quarter", NULL};
 static const struct sf_param thick_rows[] = {
@@ -363,6 +372,7 @@ static const struct sf_param scene_rows[] = {
      .rebuild = SF_REBUILD_GRAPH | SF_REBUILD_ASSETS}, /* methods have textures of their own */
     {ROW_OBJECT("sim", sim, sim_group, "the simulation")},
     {ROW_OBJECT("output", output, output_group, "pictures for the eye")},
+    {ROW_OBJECT("surfaces", surfaces, surface_group, "how objects are drawn")},
     {ROW_OBJECT("shadow", shadow, shadow_group, "shadows of objects")},
     {ROW_OBJECT("thick", thick, thick_group, "the methods thick and thick-larsson")},
     {ROW_OBJECT("larsson", larsson, larsson_group, "the method thick-larsson")},

@@ -516,8 +516,8 @@ static void write_panorama(void)
 static void try_control(const char *path, const struct sf_scene *scene, const struct trace *trace,
                         const struct sf_control *from)
 {
-    const char *const files[] = {"../assets/pyramid.gltf", "../assets/house.obj", "../assets/tiny.csv", panorama,
-                                 "../assets/cube-nx.png", "../assets/effect-inner.json"};
+    const char *const files[] = {"../assets/pyramid.gltf", "../assets/house.obj",        "../assets/tiny.csv", panorama,
+                                 "../assets/cube-nx.png",  "../assets/effect-inner.json"};
     struct sf_control control = *from;
 
     if (control.kind == SF_CONTROL_TEXT) {

@@ -26,7 +26,7 @@ def expect(name, scene, right):
         print(f"{name}: {errors[0].message if errors else 'is accepted'}")
 
 
-scenes = sorted((root / "scenes").glob("*.json")) + sorted((root / "scenes/tiny").glob("*.json"))
+scenes = [path for folder in ("scenes", "scenes/bench", "scenes/tiny") for path in sorted((root / folder).glob("*.json"))]
 for path in scenes:
     expect(path.name, json.loads(path.read_text()), True)
 effects = sorted((root / "scenes/effects").glob("*.json")) + sorted((root / "scenes/assets").glob("effect-*.json"))

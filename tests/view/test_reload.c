@@ -180,7 +180,7 @@ static void test_nothing(void **state)
 
 static void test_change(void **state)
 {
-    static const char tail[] = "    if (ENVIRONMENT == 0u)", dark[] = "    if (false)";
+    static const char tail[] = "color = sky_color()", dark[] = "color = vec4(0.0)";
     struct sf_reload *reload = created();
     bool renewed = true;
 

@@ -5,13 +5,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include "../console.h"
+#include "../files.h"
 #include "../session.h"
 
-enum { PATH_BYTES = 4096 };
 static const char truth_scenes[] = "scenes/truth";
 
 static enum sf_status out_of_memory(void)
@@ -74,35 +72,20 @@ static enum sf_status add_folder(struct sf_verify *verify, const char *folder)
     return status;
 }
 
-/* The folder of the running program; "" when the system does not tell. */
-static void program_folder(char folder[PATH_BYTES])
-{
-    ssize_t length = readlink("/proc/self/exe", folder, PATH_BYTES - 1);
-    char *slash;
-
-    folder[length > 0 ? length : 0] = '\0';
-    slash = strrchr(folder, '/');
-    if (slash)
-        *slash = '\0';
-}
-
 enum sf_status sf_verify_find_scenes(struct sf_verify *verify)
 {
-    static const char *const places[] = {"", "/.."};
     const struct sf_argument_list *files = &verify->arguments->files;
-    char folder[PATH_BYTES], beside[PATH_BYTES + 64];
     enum sf_status status = SF_OK;
+    char *folder;
 
     for (size_t i = 0; i < files->count && !status; i++)
         status = add_path(verify, strdup(files->items[i]));
     if (files->count > 0)
         return status;
-    status = add_folder(verify, truth_scenes);
-    program_folder(folder);
-    for (size_t i = 0; i < 2 && folder[0] && verify->path_count == 0 && !status; i++) {
-        snprintf(beside, sizeof beside, "%s%s/%s", folder, places[i], truth_scenes);
-        status = add_folder(verify, beside);
-    }
+    folder = sf_file_beside_program(truth_scenes);
+    if (folder)
+        status = add_folder(verify, folder);
+    free(folder);
     if (!status && verify->path_count == 0)
         return sf_console_fail(SF_ERROR_USAGE, "verify: needs SCENE: there is no folder %s here or beside the program",
                                truth_scenes);

@@ -458,6 +458,9 @@ struct sf_ceilings {
 };
 enum sf_status sf_measure_ceilings(struct sf_device *device, uint32_t width, uint32_t height, uint32_t repeats,
                                    const struct sf_log *log, struct sf_ceilings *ceilings);
+/* How many of these compute copies a frame of the scene's method is meant to take at most, at 800x800, half resolution
+ * and 512 particles; 0: none is set. */
+double sf_measure_goal(const struct sf_scene *scene);
 struct sf_sort_timing {
     uint64_t gpu_min_ns, gpu_median_ns, cpu_min_ns,
         cpu_median_ns; /* cpu: a comparison sort of the same pairs on one thread */
