@@ -59,16 +59,6 @@ struct profile {
 profile seen;
 float opaque; // 1 - T
 
-// How a lamp beside the ray shares its light out over the slices. Lengths are in view depth.
-struct lamp_share {
-    float nearest, beside; // where the ray comes closest to the lamp, and how far it is there
-    float mean;            // of 1 / (beside + |distance from the nearest point|)^2 over the light that the ray sends
-    vec4 w0, w1;           // the light that each slice sends, of what reaches the eye
-    vec4 c0, c1, m0, m1;   // the same times that square's mean over the slice, as a share of the whole: before the slice, and in it
-    vec4 y0, y1;           // how much way_of rises in each slice
-    float start;           // way_of at seen.near
-};
-
 // Optical depths at the slices' ends.
 void fathom(thick_list touching, thick_ray ray)
 {
@@ -151,60 +141,37 @@ vec3 tint_seen(thick_list touching, thick_ray ray)
     return sum.rgb / sum.a;
 }
 
-// Runs from -1 to 1 along a line, with a rise in proportion to 1 / (beside + |way|)^2: almost as light falls that a lamp beside it sheds.
-vec4 way_of(vec4 way, float beside)
+#include "thick/lamp.glsl"
+
+// Samples 0, 1, ... of STEPS: where in 0..1 of the light they stand, and what part of it each is.
+struct course {
+    float at, part;
+    vec2 turn; // of the next sample: cosine and sine
+};
+
+// `even`: in the middles of equal parts, else shifted there by `shift`. Otherwise as Gauss and Legendre's rule has them, to what is its limit for many
+// samples (within 4e-4 for 8): at (1 - cos a) / 2 with a in equal steps, close together at the ends, where light changes most.
+course next_of(course before, uint i, bool even, float shift)
 {
-    return way / (beside + abs(way));
+    const float step = 3.14159265 / (float(STEPS) + 0.5);
+    vec2 turn = i == 0u ? vec2(cos(0.75 * step), sin(0.75 * step)) : before.turn;
+    course here;
+    here.at = even ? (float(i) + shift) / float(STEPS) : 0.5 - 0.5 * turn.x;
+    // The parts sum to 1.
+    here.part = even ? 1.0 / float(STEPS) : turn.y * sin(0.5 * step) / (sin(0.5 * step * float(STEPS)) * sin(step * (0.5 * float(STEPS) + 0.25)));
+    here.turn = vec2(turn.x * cos(step) - turn.y * sin(step), turn.y * cos(step) + turn.x * sin(step));
+    return here;
 }
 
-lamp_share share_out(vec3 lamp, vec3 ray)
+// Sample i: its view depth, and its share of the light.
+vec2 sample_at(uint i, course samples)
 {
-    lamp_share share;
-    vec3 to_lamp = lamp - frame.eye.xyz;
-    float inverse = 1.0 / dot(ray, ray);
-    share.nearest = dot(to_lamp, ray) * inverse;
-    share.beside = max(length(to_lamp - share.nearest * ray) * sqrt(inverse), 1e-5);
-    vec4 a0 = vec4(seen.near, seen.e0.xyz) - share.nearest, b0 = seen.e0 - share.nearest, a1 = vec4(seen.e0.w, seen.e1.xyz) - share.nearest, b1 = seen.e1 - share.nearest;
-    share.start = a0.x / (share.beside + abs(a0.x));
-    share.y0 = way_of(b0, share.beside) - way_of(a0, share.beside);
-    share.y1 = way_of(b1, share.beside) - way_of(a1, share.beside);
-    vec4 s0 = opaque > 1e-4 ? 1.0 - exp(-seen.g0) : seen.g0 * (opaque / max(seen.whole, 1e-20)), s1 = opaque > 1e-4 ? 1.0 - exp(-seen.g1) : seen.g1 * (opaque / max(seen.whole, 1e-20));
-    share.w0 = s0 - vec4(0.0, s0.xyz);
-    share.w1 = s1 - vec4(s0.w, s1.xyz);
-    // The mean over a slice that begins at a and ends at b: (1 + 2 max(-a b, 0) / (beside (b - a))) / ((beside + |a|) (beside + |b|)).
-    vec4 m0 = share.w0 * (1.0 + 2.0 * max(-a0 * b0, 0.0) / (share.beside * max(b0 - a0, 1e-9))) / ((share.beside + abs(a0)) * (share.beside + abs(b0)));
-    vec4 m1 = share.w1 * (1.0 + 2.0 * max(-a1 * b1, 0.0) / (share.beside * max(b1 - a1, 1e-9))) / ((share.beside + abs(a1)) * (share.beside + abs(b1)));
-    share.mean = dot(m0 + m1, vec4(1.0));
-    float one = 1.0 / max(share.mean, 1e-30);
-    share.m0 = m0 * one;
-    share.m1 = m1 * one;
-    share.c0 = vec4(0.0, share.m0.x, share.m0.x + share.m0.y, share.m0.x + share.m0.y + share.m0.z);
-    share.c1 = share.c0.w + share.m0.w + vec4(0.0, share.m1.x, share.m1.x + share.m1.y, share.m1.x + share.m1.y + share.m1.z);
-    return share;
-}
-
-// As sample_at, of a lamp: samples stand at equal shares of what it sheds.
-vec2 lamp_sample_at(lamp_share share, uint i, float shift)
-{
-    float u = (float(i) + shift) / float(STEPS);
-    float sent = dot(clamp((u - share.c0) / max(share.m0, 1e-7), 0.0, 1.0), share.w0) + dot(clamp((u - share.c1) / max(share.m1, 1e-7), 0.0, 1.0), share.w1);
-    float depth = opaque > 1e-4 ? -log(max(1.0 - sent, 1e-7)) : sent * (seen.whole / max(opaque, 1e-20));
-    vec4 b0 = vec4(0.0, seen.g0.xyz), b1 = vec4(seen.g0.w, seen.g1.xyz);
-    float way = share.start + dot(clamp((depth - b0) / max(seen.g0 - b0, 1e-7), 0.0, 1.0), share.y0) + dot(clamp((depth - b1) / max(seen.g1 - b1, 1e-7), 0.0, 1.0), share.y1);
-    float at = clamp(share.nearest + share.beside * way / max(1.0 - abs(way), 1e-7), seen.near, seen.far);
-    float reach = share.beside + abs(at - share.nearest);
-    return vec2(at, share.mean / float(STEPS) * exp(depth - depth_at(at)) * reach * reach);
-}
-
-// Sample i of STEPS: its view depth, and its share of the light. `shift` 0..1: where in its part it stands.
-vec2 sample_at(uint i, float shift)
-{
-    float u = (float(i) + shift) / float(STEPS);
     if (PLACEMENT == SF_THICK_PLACEMENT_UNIFORM) {
+        float u = (float(i) + 0.5) / float(STEPS);
         float before = depth_at(mix(seen.near, seen.far, float(i) / float(STEPS))), after = depth_at(mix(seen.near, seen.far, float(i + 1u) / float(STEPS)));
         return vec2(mix(seen.near, seen.far, u), exp(-before) - exp(-after));
     }
-    return vec2(place_seen(u), opaque / float(STEPS));
+    return vec2(place_seen(samples.at), opaque * samples.part);
 }
 
 // Optical depth between a light and a point, by the light's map. `moved`: part of a texel by which the look-up is shifted.
@@ -236,14 +203,17 @@ vec3 scattered_from(uint index, vec3 ray, vec3 direction, float shift, uint step
     vec4 info = light.shadow;
     uint left = index * push.cell_size;
     vec3 sum = vec3(0.0);
-    lamp_share share;
-    if (POSITIONAL != 0u)
-        share = share_out(light.position.xyz, ray);
+    bool lamp_like = POSITIONAL != 0u && PLACEMENT != SF_THICK_PLACEMENT_UNIFORM && !directional;
+    // A spot's light ends within the smoke: equal parts meet the edges better.
+    bool even = PLACEMENT != SF_THICK_PLACEMENT_EQUAL || uint(light.position.w) == SF_LIGHT_KIND_SPOT;
+    course samples;
+    lamp_share lamp;
+    if (lamp_like)
+        lamp = lamp_shares(light.position.xyz - frame.eye.xyz, ray);
     // A pixel without smoke takes no step: lavapipe leaves a loop when no lane is in it, where it would run the body of an `if`.
     for (uint i = 0u; i < steps; i++) {
-        vec2 at = sample_at(i, shift);
-        if (POSITIONAL != 0u && PLACEMENT != SF_THICK_PLACEMENT_UNIFORM && !directional)
-            at = lamp_sample_at(share, i, shift);
+        samples = next_of(samples, i, even, shift);
+        vec2 at = lamp_like ? lamp_place(lamp, samples.at) * vec2(1.0, samples.part) : sample_at(i, samples);
         if (POSITIONAL != 0u && !directional) {
             irradiance = light_irradiance(light, frame.eye.xyz + at.x * ray, to_light);
             phases = octave_phases(dot(direction, to_light));
