@@ -55,6 +55,7 @@ struct profile {
     float near, far, whole;
     vec4 e0, e1; // ends of SF_THICK_GUIDE = 8 slices, view depths
     vec4 g0, g1; // optical depths there
+    vec4 h0, h1; // 1 / their rise in each slice: a division for each sample would cost more
 };
 profile seen;
 float opaque; // 1 - T
@@ -73,14 +74,16 @@ void fathom(thick_list touching, thick_ray ray)
             seen.g1 += depth * clamp(seen.e1 * inverse - before, 0.0, 1.0);
         }
     }
+    seen.h0 = 1.0 / max(seen.g0 - vec4(0.0, seen.g0.xyz), 1e-7);
+    seen.h1 = 1.0 / max(seen.g1 - vec4(seen.g0.w, seen.g1.xyz), 1e-7);
 }
 
 // View depth at which the optical depth from the eye is `depth`.
 float place_of(float depth)
 {
     vec4 b0 = vec4(0.0, seen.g0.xyz), b1 = vec4(seen.g0.w, seen.g1.xyz);
-    return seen.near + dot(clamp((depth - b0) / max(seen.g0 - b0, 1e-7), 0.0, 1.0), seen.e0 - vec4(seen.near, seen.e0.xyz)) +
-           dot(clamp((depth - b1) / max(seen.g1 - b1, 1e-7), 0.0, 1.0), seen.e1 - vec4(seen.e0.w, seen.e1.xyz));
+    return seen.near + dot(clamp((depth - b0) * seen.h0, 0.0, 1.0), seen.e0 - vec4(seen.near, seen.e0.xyz)) +
+           dot(clamp((depth - b1) * seen.h1, 0.0, 1.0), seen.e1 - vec4(seen.e0.w, seen.e1.xyz));
 }
 
 // The view depth before which the share `u` of the light is sent that reaches the eye.
