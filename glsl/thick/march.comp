@@ -21,7 +21,7 @@ void main()
     ivec2 pixel = ivec2(place);
     looked at = look(pixel, ranges[gl_WorkGroupID.x]);
     uint steps = seen.whole > 0.0 ? STEPS : 0u;
-    vec3 radiance = sent(at, pixel, steps, opaque);
+    vec3 radiance = sent(at, pixel, steps, SF_DEPTH_FAR, opaque);
     if (place.x < push.width && place.y < push.height)
         imageStore(target, pixel, steps > 0u ? vec4(radiance, opaque) : vec4(0.0));
 }

@@ -2,9 +2,9 @@
 //
 // Along the ray the optical depth from the eye is a sum over the tile's spheres, each adding a straight rise between its entry and its exit. It is evaluated
 // exactly at the ends of SF_THICK_GUIDE equal slices of near..far; between them it is taken as straight. Empty space stays empty: the depth
-// does not rise in it, and no sample ever stands there. Samples stand at equal shares of the light that reaches the eye,
-// T(s_i) = 1 - u_i (1 - T), u_i = (i + 1/2) / STEPS, so that L = (1 - T) mean_i S(s_i); or in the middles of equal slices, weighted by
-// the light that each sends; at each the lights' maps say what is before it (light_map.comp).
+// does not rise in it, and no sample ever stands there. Samples stand at shares u_i of the light that reaches the eye, T(s_i) = 1 - u_i (1 - T), where
+// Gauss and Legendre's rule has them, so that L = (1 - T) sum_i w_i S(s_i); a lamp's at shares of what it sheds (lamp.glsl); or in the middles of equal
+// slices, weighted by the light that each sends. At each the lights' maps say what is before it (light_map.comp).
 #ifndef SF_THICK_MARCH_GLSL
 #define SF_THICK_MARCH_GLSL
 
@@ -45,6 +45,7 @@ struct profile {
     float near, far, whole;
     vec4 e0, e1; // ends of SF_THICK_GUIDE = 8 slices, view depths
     vec4 g0, g1; // optical depths there
+    vec4 h0, h1; // 1 / their rise in each slice: a division for each sample would cost more
 };
 profile seen;
 float opaque; // 1 - T
@@ -63,14 +64,16 @@ void fathom(thick_list touching, thick_ray ray)
             seen.g1 += depth * clamp(seen.e1 * inverse - before, 0.0, 1.0);
         }
     }
+    seen.h0 = 1.0 / max(seen.g0 - vec4(0.0, seen.g0.xyz), 1e-7);
+    seen.h1 = 1.0 / max(seen.g1 - vec4(seen.g0.w, seen.g1.xyz), 1e-7);
 }
 
 // View depth at which the optical depth from the eye is `depth`.
 float place_of(float depth)
 {
     vec4 b0 = vec4(0.0, seen.g0.xyz), b1 = vec4(seen.g0.w, seen.g1.xyz);
-    return seen.near + dot(clamp((depth - b0) / max(seen.g0 - b0, 1e-7), 0.0, 1.0), seen.e0 - vec4(seen.near, seen.e0.xyz)) +
-           dot(clamp((depth - b1) / max(seen.g1 - b1, 1e-7), 0.0, 1.0), seen.e1 - vec4(seen.e0.w, seen.e1.xyz));
+    return seen.near + dot(clamp((depth - b0) * seen.h0, 0.0, 1.0), seen.e0 - vec4(seen.near, seen.e0.xyz)) +
+           dot(clamp((depth - b1) * seen.h1, 0.0, 1.0), seen.e1 - vec4(seen.e0.w, seen.e1.xyz));
 }
 
 // The view depth before which the share `u` of the light is sent that reaches the eye.
@@ -131,15 +134,37 @@ vec3 tint_seen(thick_list touching, thick_ray ray)
     return sum.rgb / sum.a;
 }
 
-// Sample i of STEPS: its view depth, and its share of the light. `shift` 0..1: where in its part it stands.
-vec2 sample_at(uint i, float shift)
+#include "thick/lamp.glsl"
+
+// Samples 0, 1, ... of STEPS: where in 0..1 of the light they stand, and what part of it each is.
+struct course {
+    float at, part;
+    vec2 turn; // of the next sample: cosine and sine
+};
+
+// `even`: in the middles of equal parts, else shifted there by `shift`. Otherwise as Gauss and Legendre's rule has them, to what is its limit for many
+// samples (within 4e-4 for 8): at (1 - cos a) / 2 with a in equal steps, close together at the ends, where light changes most.
+course next_of(course before, uint i, bool even, float shift)
 {
-    float u = (float(i) + shift) / float(STEPS);
+    const float step = 3.14159265 / (float(STEPS) + 0.5);
+    vec2 turn = i == 0u ? vec2(cos(0.75 * step), sin(0.75 * step)) : before.turn;
+    course here;
+    here.at = even ? (float(i) + shift) / float(STEPS) : 0.5 - 0.5 * turn.x;
+    // The parts sum to 1.
+    here.part = even ? 1.0 / float(STEPS) : turn.y * sin(0.5 * step) / (sin(0.5 * step * float(STEPS)) * sin(step * (0.5 * float(STEPS) + 0.25)));
+    here.turn = vec2(turn.x * cos(step) - turn.y * sin(step), turn.y * cos(step) + turn.x * sin(step));
+    return here;
+}
+
+// Sample i: its view depth, and its share of the light.
+vec2 sample_at(uint i, course samples)
+{
     if (PLACEMENT == SF_THICK_PLACEMENT_UNIFORM) {
+        float u = (float(i) + 0.5) / float(STEPS);
         float before = depth_at(mix(seen.near, seen.far, float(i) / float(STEPS))), after = depth_at(mix(seen.near, seen.far, float(i + 1u) / float(STEPS)));
         return vec2(mix(seen.near, seen.far, u), exp(-before) - exp(-after));
     }
-    return vec2(place_seen(u), opaque / float(STEPS));
+    return vec2(place_seen(samples.at), opaque * samples.part);
 }
 
 // Optical depth between a light and a point, by the light's map. `moved`: part of a texel by which the look-up is shifted.
@@ -156,8 +181,8 @@ float depth_to_light(vec3 at, vec2 shift, uint left)
     return inside == moved && ends.y > ends.x ? mix(pair.x, pair.y, slice - number) : 0.0;
 }
 
-// What one light adds, before albedo: the sum of share p E T over the samples.
-vec3 scattered_from(uint index, vec3 ray, vec3 direction, float shift, uint steps)
+// What one light adds, before albedo: the sum of share p E T over the samples; of a probe over those up to a view depth.
+vec3 scattered_from(uint index, vec3 ray, vec3 direction, float shift, uint steps, float until)
 {
     sf_gpu_light light = frame.lights[index];
     sf_gpu_light_view view = views[index];
@@ -171,9 +196,17 @@ vec3 scattered_from(uint index, vec3 ray, vec3 direction, float shift, uint step
     vec4 info = light.shadow;
     uint left = index * push.cell_size;
     vec3 sum = vec3(0.0);
+    bool lamp_like = POSITIONAL != 0u && PLACEMENT != SF_THICK_PLACEMENT_UNIFORM && !directional;
+    // A spot's light ends within the smoke: equal parts meet the edges better.
+    bool even = PLACEMENT != SF_THICK_PLACEMENT_EQUAL || uint(light.position.w) == SF_LIGHT_KIND_SPOT;
+    course samples;
+    lamp_share lamp;
+    if (lamp_like)
+        lamp = lamp_shares(light.position.xyz - frame.eye.xyz, ray);
     // A pixel without smoke takes no step: lavapipe leaves a loop when no lane is in it, where it would run the body of an `if`.
     for (uint i = 0u; i < steps; i++) {
-        vec2 at = sample_at(i, shift);
+        samples = next_of(samples, i, even, shift);
+        vec2 at = lamp_like ? lamp_place(lamp, samples.at) * vec2(1.0, samples.part) : sample_at(i, samples);
         if (POSITIONAL != 0u && !directional) {
             irradiance = light_irradiance(light, frame.eye.xyz + at.x * ray, to_light);
             phases = octave_phases(dot(direction, to_light));
@@ -184,6 +217,9 @@ vec3 scattered_from(uint index, vec3 ray, vec3 direction, float shift, uint step
         float lit = at.y * dot(phases, octave_transmittances(depth));
         if (SCENE_SHADOW != 0u)
             lit *= info.x > 0.0 ? shadow_share(POSITIONAL != 0u && !directional, s_eye + at.x * s_ray, info.y, info.z, info.w) : 1.0;
+#ifdef PROBE_BINDING
+        lit = at.x <= until ? lit : 0.0;
+#endif
         sum += lit * irradiance;
     }
     return sum;
@@ -210,8 +246,8 @@ looked look(ivec2 pixel, uvec2 range)
     return at;
 }
 
-// What the first `steps` of the ray's samples send to the eye, which hide `part` of what is behind them.
-vec3 sent(looked at, ivec2 pixel, uint steps, float part)
+// What the ray's samples send to the eye (of a probe those up to the view depth `until`), which hide `part` of what is behind them.
+vec3 sent(looked at, ivec2 pixel, uint steps, float until, float part)
 {
     vec3 direction = normalize(at.ray);
     float shift = 0.5;
@@ -219,7 +255,7 @@ vec3 sent(looked at, ivec2 pixel, uint steps, float part)
         shift = fract(52.9829189 * fract(dot(vec2(pixel), vec2(0.06711056, 0.00583715))) + 0.61803399 * float(frame.frame_number & 1023u));
     vec3 scattered = vec3(0.0);
     for (uint i = 0u; i < LIGHTS; i++)
-        scattered += scattered_from(i, at.ray, direction, shift, steps);
+        scattered += scattered_from(i, at.ray, direction, shift, steps, until);
 
     vec3 outward = frame.eye.xyz + place_seen(0.5) * at.ray - args.centre.xyz; // L 3.3.5
     vec3 ambient = environment_blurred(outward / max(length(outward), 1e-6)) * push.ambient;

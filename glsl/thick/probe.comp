@@ -5,8 +5,8 @@
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_shuffle : require
 #extension GL_EXT_control_flow_attributes : require
-// What march.comp does along one pixel's ray, sample by sample. One group, all of whose threads look along that ray: thread i takes its first i + 1
-// samples.
+// What march.comp does along one pixel's ray, sample by sample. One group, all of whose threads look along that ray: thread i takes those of its
+// samples that stand before the end of the (i + 1)-th part of the light.
 #include "shared/frame.h"
 #include "shared/particle.h"
 #include "shared/thick.h"
@@ -19,15 +19,20 @@ layout(local_size_x = SF_THICK_TILE * SF_THICK_TILE) in;
 const uint NONE = 0xffffffffu;
 shared uint found; // the number of the pixel's tile in the list
 
-// View depth of the boundary behind the first `count` samples, and the transmittance to it.
+// View depth of the boundary behind the first `count` samples, and the transmittance to it. A lamp's samples stand elsewhere.
 vec2 boundary(uint count)
 {
     if (count == STEPS)
         return vec2(seen.far, 1.0 - opaque);
-    float u = float(count) / float(STEPS);
     if (PLACEMENT == SF_THICK_PLACEMENT_UNIFORM) {
-        float at = mix(seen.near, seen.far, u);
+        float at = mix(seen.near, seen.far, float(count) / float(STEPS));
         return vec2(at, exp(-depth_at(at)));
+    }
+    course samples;
+    float u = 0.0;
+    for (uint i = 0u; i < count; i++) {
+        samples = next_of(samples, i, PLACEMENT != SF_THICK_PLACEMENT_EQUAL, 0.5);
+        u += samples.part;
     }
     return vec2(place_seen(u), 1.0 - u * opaque);
 }
@@ -48,7 +53,7 @@ void main()
     bool smoke = seen.whole > 0.0;
     uint count = min(thread + 1u, STEPS);
     vec2 end = boundary(count);
-    vec3 radiance = sent(at, pixel, smoke ? count : 0u, 1.0 - end.y);
+    vec3 radiance = sent(at, pixel, smoke ? STEPS : 0u, count < STEPS ? end.x : SF_DEPTH_FAR, 1.0 - end.y);
     if (thread == 0u) {
         probe_count = smoke ? STEPS + 1u : 0u;
         probe_store(0u, seen.near, 1.0, vec3(0.0));

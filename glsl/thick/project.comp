@@ -35,8 +35,8 @@ uvec4 tiles_of(vec3 c, float radius)
 void main()
 {
     uint index = gl_GlobalInvocationID.x;
-    if (index == 0u)
-        spheres[push.capacity].ball = vec4(SF_THICK_NOWHERE, SF_THICK_NOWHERE, 0.0, 0.0);
+    if (index == 0u) // whole, since what memory held before may be NaN, and that times no chord is NaN
+        spheres[push.capacity] = sf_thick_sphere(vec4(SF_THICK_NOWHERE, SF_THICK_NOWHERE, 0.0, 0.0), vec4(0.0), vec4(0.0));
     if (index >= counts.live)
         return;
     sf_particle p = particles[index];

@@ -270,7 +270,9 @@ static void declare_scene(struct sf_assembly *assembly, bool shown)
                                    : frame_image(assembly, "color", format);
     assembly->method.depth = frame_image(assembly, "depth", SF_FORMAT_R32F);
     memcpy(parts.constants, assembly->drawn.constants, sizeof parts.constants);
-    if (!assembly->method.smoke_map || !assembly->method.smoke_shadows)
+    const struct sf_object_list *list = &assembly->drawn.list;
+    bool surfaces = list->planes + list->solids + list->meshes > 0; /* else no shadow is seen, and no map of it made */
+    if (!surfaces || !assembly->method.smoke_map || !assembly->method.smoke_shadows)
         parts.constants[SF_SHADE_CASTS] = 0;
     bool with_z = assembly->drawn.list.solids + assembly->drawn.list.meshes > 0;
     if (with_z)
