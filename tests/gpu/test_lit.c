@@ -19,6 +19,7 @@ struct lamp {
 struct puff {
     const char *method;
     double alpha, normal[3], height; /* of the atlas */
+    bool ridged;                     /* every fourth column of it has no height */
     double extinction, g;
     double wrap, translucency, halo, blend;
     double absorption, dampening;
@@ -47,7 +48,9 @@ static void write_atlas(const struct puff *puff)
     texture->info.channels = SF_TEXTURE_ALL;
     for (size_t i = 0; i < (size_t)ATLAS * ATLAS * 4; i++) {
         texture->color[i] = i % 4 < 3 ? 1 : (float)puff->alpha;
-        texture->shape[i] = (float)(i % 4 < 3 ? puff->normal[i % 4] : puff->height);
+        texture->shape[i] = (float)(i % 4 < 3                                ? puff->normal[i % 4]
+                                    : puff->ridged && i / 4 % ATLAS % 4 == 0 ? 0
+                                                                             : puff->height);
     }
     remove("atlas.exr");
     assert_int_equal(sf_texture_write_exr(texture, "atlas.exr", SF_TEXTURE_ALL, &exr, &kit_log), SF_OK);
@@ -449,6 +452,48 @@ static void test_level_field(void **state)
     check(&puff, 1e-2);
 }
 
+/* 5.2.5: where the normal is the way to the eye, `facing` takes the most steps and `grazing` the fewest; where it stands
+ * across it, the other way round. The field has ridges, so that the number of steps shows. */
+static void test_readings_of_the_equation(void **state)
+{
+    static const double normals[2][3] = {{0, 0, 1}, {1, 0, 0}};
+    static const char *const sets[4] = {"scattering.more=facing", "scattering.more=grazing", "scattering.steps=3",
+                                        "scattering.steps_min=40"};
+
+    (void)state;
+    for (size_t n = 0; n < 2; n++) {
+        const float *found[4];
+        struct picture pictures[4];
+        struct puff puff = usual;
+        char text[8192];
+
+        puff.method = "lit-scattering";
+        puff.height = 0.25;
+        puff.ridged = true;
+        puff.steps = 3; /* of steps_min; at most 40 unless a set says otherwise */
+        puff.lamps[0] = (struct lamp){{0.96, 0, -0.28}, false, 3};
+        memcpy(puff.normal, normals[n], sizeof puff.normal);
+        write_atlas(&puff);
+        print_scene(&puff, FILE_ATLAS, "", text, sizeof text);
+        for (size_t i = 0; i < 4; i++) {
+            const char *const set[2] = {"scattering.steps=40", sets[i]};
+            struct stage stage = {0};
+            struct sf_scene *scene = NULL;
+
+            assert_int_equal(sf_scene_parse("test", text, strlen(text), set, 2, &kit_log, &scene), SF_OK);
+            stage = stage_with(scene, SIDE, SIDE);
+            pictures[i] = stage_draw(&stage, 0);
+            stage_end(&stage);
+            found[i] = pictures[i].smoke[SIDE * SIDE / 2];
+        }
+        assert_float_not_equal((double)found[2][0], (double)found[3][0], 1e-3);
+        assert_float_equal((double)found[n == 0 ? 0 : 1][0], (double)found[3][0], 1e-6); /* the most */
+        assert_float_equal((double)found[n == 0 ? 1 : 0][0], (double)found[2][0], 1e-6); /* the fewest */
+        for (size_t i = 0; i < 4; i++)
+            picture_free(&pictures[i]);
+    }
+}
+
 static int setup(void **state)
 {
     return kit_setup(state) ? -1 : scratch_enter(state);
@@ -467,7 +512,7 @@ int main(void)
         cmocka_unit_test(test_lights_add),          cmocka_unit_test(test_blending),
         cmocka_unit_test(test_ramp_over_intensity), cmocka_unit_test(test_only_others_cast_shadows),
         cmocka_unit_test(test_quarter_turn),        cmocka_unit_test(test_order_of_the_list),
-        cmocka_unit_test(test_level_field),
+        cmocka_unit_test(test_level_field),         cmocka_unit_test(test_readings_of_the_equation),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }
