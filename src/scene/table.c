@@ -28,7 +28,7 @@ static const char *const atlas_kinds[] = {"plain", "made", "file", NULL};
 static const char *const smoke_kinds[] = {"fbm", "turbulence", "cellular", "dispersed", NULL};
 static const struct sf_param atlas_rows[] = {
     {ROW_ENUM("type", struct sf_atlas, kind, atlas_kinds, SF_ATLAS_PLAIN,
-              "quick noise for thick's detail, smoke made by the program, a file"),
+              "quick noise and puffs, smoke made by the program, a file"),
      .rebuild = SF_REBUILD_ASSETS},
     {ROW_ENUM("kind", struct sf_atlas, smoke, smoke_kinds, 3, "of smoke: see textures.md"), .only_for = "made",
      .rebuild = SF_REBUILD_ASSETS},
