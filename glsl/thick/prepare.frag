@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-// Empties the smoke's image where it will be used, and takes the scene's depth down. Depths behind all smoke are made equal.
+// Empties the smoke's image where it will be used, and takes the scene's depth down.
 #include "shared/frame.h"
 #include "shared/thick.h"
 
@@ -19,5 +19,5 @@ void main()
     if (reduced.y < behind.x)
         mask[number] = SF_THICK_TILE_CUT;
     smoke = vec4(0.0);
-    depth = min(reduced.x, behind.x);
+    depth = reduced.x;
 }
