@@ -71,11 +71,7 @@ enum sf_status sf_billboard_light(struct sf_method_frame *frame, void *state, co
     struct sf_billboards *billboards = state;
 
     sf_billboard_update(frame, billboards);
-    /* Without objects there is nothing that the smoke could shadow. */
-    if (frame->scene->thick.ground_shadow && frame->scene->light_count > 0 && frame->scene->object_count > 0)
-        return sf_larsson_light(frame, &billboards->thick, log);
-    sf_thick_fit(frame, &billboards->thick, false);
-    return SF_OK;
+    return sf_larsson_shadow(frame, &billboards->thick, log);
 }
 
 static void add_pass(struct sf_method_frame *frame, const struct sf_billboards *billboards, const struct sf_use *uses,
@@ -182,14 +178,11 @@ static uint32_t whole_choice(const struct sf_scene *scene)
 
 static void add_over(struct sf_method_frame *frame, const struct sf_billboards *billboards)
 {
-    uint32_t choice = whole_choice(frame->scene);
+    const struct sf_thick_full over = {.names = {"billboard.over", "billboard.over_plain", "billboard.over_cut"},
+                                       .fragment = "larsson/over.frag",
+                                       .choice = whole_choice(frame->scene)};
 
-    if (billboards->push.scale == 1 || choice != 0) {
-        sf_thick_over(frame, &billboards->thick, "billboard.over", "larsson/over.frag", choice);
-        return;
-    }
-    sf_thick_over(frame, &billboards->thick, "billboard.over_plain", "larsson/over.frag", 1);
-    sf_thick_over(frame, &billboards->thick, "billboard.over_cut", "larsson/over.frag", 2);
+    sf_thick_over(frame, &billboards->thick, &over);
 }
 
 static void add_aovs(struct sf_method_frame *frame, struct sf_billboards *billboards)
@@ -205,27 +198,12 @@ static void add_aovs(struct sf_method_frame *frame, struct sf_billboards *billbo
                              .binding = 0,
                              .load = SF_LOAD_CLEAR,
                              .clear = {SF_DEPTH_FAR, SF_DEPTH_FAR, 1, 0}});
-    frame->aov_radiance = sf_thick_image(frame->graph, "aov.smoke", SF_FORMAT_RGBA32F, frame->width, frame->height);
-    frame->aov_depths = sf_thick_image(frame->graph, "aov.depths", SF_FORMAT_RGBA32F, frame->width, frame->height);
-    const struct sf_thick *thick = &billboards->thick;
-    const struct sf_use uses[] = {
-        {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
-        {.resource = thick->tiles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
-        {.resource = thick->smoke, .access = SF_ACCESS_SAMPLED, .binding = 2, .sampler = SF_SAMPLER_LINEAR},
-        {.resource = thick->smoke_depth, .access = SF_ACCESS_SAMPLED, .binding = 3},
-        {.resource = frame->depth, .access = SF_ACCESS_SAMPLED, .binding = 4},
-        {.resource = extent, .access = SF_ACCESS_SAMPLED, .binding = 5},
-        {.resource = thick->args, .access = SF_ACCESS_STORAGE_READ, .binding = 7},
-        {.resource = thick->mask, .access = SF_ACCESS_STORAGE_READ, .binding = 8},
-        {.resource = frame->aov_radiance, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_CLEAR},
-        {.resource = frame->aov_depths,
-         .access = SF_ACCESS_COLOR,
-         .binding = 1,
-         .load = SF_LOAD_CLEAR,
-         .clear = {SF_DEPTH_FAR, SF_DEPTH_FAR, 0, 1}},
-    };
-    sf_thick_tile_pass(frame, thick, uses, SF_COUNT(uses), true, whole_choice(frame->scene),
-                       (struct sf_pass_desc){.name = "billboard.aovs", .fragment = "billboard/aovs.frag"});
+    const struct sf_thick_full aovs = {.names = {"billboard.aovs"},
+                                       .fragment = "billboard/aovs.frag",
+                                       .reads = {{.resource = extent, .access = SF_ACCESS_SAMPLED, .binding = 5}},
+                                       .read_count = 1,
+                                       .choice = whole_choice(frame->scene)};
+    sf_thick_aovs(frame, &billboards->thick, SF_FORMAT_RGBA32F, &aovs);
 }
 
 enum sf_status sf_billboard_view(struct sf_method_frame *frame, void *state, const struct sf_billboard_look *look,

@@ -143,29 +143,12 @@ static void add_march(struct sf_method_frame *frame, struct sf_thick *thick)
     sf_thick_probe(frame, thick, uses, SF_COUNT(uses), march);
 }
 
-static void add_aovs(struct sf_method_frame *frame, struct sf_thick *thick)
+enum sf_status sf_larsson_shadow(struct sf_method_frame *frame, struct sf_thick *thick, const struct sf_log *log)
 {
-    frame->aov_radiance = sf_thick_image(frame->graph, "aov.smoke", SF_FORMAT_RGBA16F, frame->width, frame->height);
-    frame->aov_depths = sf_thick_image(frame->graph, "aov.depths", SF_FORMAT_RGBA32F, frame->width, frame->height);
-    const struct sf_use uses[] = {
-        {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
-        {.resource = thick->tiles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
-        {.resource = thick->smoke, .access = SF_ACCESS_SAMPLED, .binding = 2, .sampler = SF_SAMPLER_LINEAR},
-        {.resource = thick->smoke_depth, .access = SF_ACCESS_SAMPLED, .binding = 3},
-        {.resource = frame->depth, .access = SF_ACCESS_SAMPLED, .binding = 4},
-        {.resource = thick->raw, .access = SF_ACCESS_SAMPLED, .binding = 5},
-        {.resource = thick->blurred, .access = SF_ACCESS_SAMPLED, .binding = 6},
-        {.resource = thick->args, .access = SF_ACCESS_STORAGE_READ, .binding = 7},
-        {.resource = thick->mask, .access = SF_ACCESS_STORAGE_READ, .binding = 8},
-        {.resource = frame->aov_radiance, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_CLEAR},
-        {.resource = frame->aov_depths,
-         .access = SF_ACCESS_COLOR,
-         .binding = 1,
-         .load = SF_LOAD_CLEAR,
-         .clear = {SF_DEPTH_FAR, SF_DEPTH_FAR, 0, 1}},
-    };
-    sf_thick_tile_pass(frame, thick, uses, SF_COUNT(uses), true, 0,
-                       (struct sf_pass_desc){.name = "larsson.aovs", .fragment = "larsson/aovs.frag"});
+    if (frame->scene->thick.ground_shadow && frame->scene->light_count > 0)
+        return sf_larsson_light(frame, thick, log);
+    sf_thick_fit(frame, thick, false);
+    return SF_OK;
 }
 
 enum sf_status sf_larsson_view(struct sf_method_frame *frame, void *state, const struct sf_log *log)
@@ -190,13 +173,16 @@ enum sf_status sf_larsson_view(struct sf_method_frame *frame, void *state, const
     static const char *const names[] = {"larsson.blur_x", "larsson.blur_y"};
     sf_thick_blur(frame, thick, names, images, true, &thick->camera_blur, radius);
     add_march(frame, thick);
-    if (thick->push.scale > 1) {
-        sf_thick_over(frame, thick, "larsson.over_plain", "larsson/over.frag", 1);
-        sf_thick_over(frame, thick, "larsson.over_cut", "larsson/over.frag", 2);
-    } else {
-        sf_thick_over(frame, thick, "larsson.over", "larsson/over.frag", 0);
-    }
+    const struct sf_thick_full over = {.names = {"larsson.over", "larsson.over_plain", "larsson.over_cut"},
+                                       .fragment = "larsson/over.frag"};
+    const struct sf_thick_full aovs = {
+        .names = {"larsson.aovs"},
+        .fragment = "larsson/aovs.frag",
+        .reads = {{.resource = thick->raw, .access = SF_ACCESS_SAMPLED, .binding = 5},
+                  {.resource = thick->blurred, .access = SF_ACCESS_SAMPLED, .binding = 6}},
+        .read_count = 2};
+    sf_thick_over(frame, thick, &over);
     if (frame->want_aovs)
-        add_aovs(frame, thick);
+        sf_thick_aovs(frame, thick, SF_FORMAT_RGBA16F, &aovs);
     return SF_OK;
 }

@@ -68,13 +68,9 @@ void sf_mega_update(const struct sf_method_frame *frame, void *state)
 enum sf_status sf_mega_light(struct sf_method_frame *frame, void *state, const struct sf_log *log)
 {
     struct sf_mega *mega = state;
-    bool shadow = frame->scene->thick.ground_shadow && frame->scene->light_count > 0;
-    enum sf_status status = shadow ? sf_larsson_light(frame, &mega->thick, log) : SF_OK;
 
     sf_mega_update(frame, mega);
-    if (!shadow)
-        sf_thick_fit(frame, &mega->thick, false);
-    return status;
+    return sf_larsson_shadow(frame, &mega->thick, log);
 }
 
 /* A pass with the push constants of both. */
@@ -258,26 +254,11 @@ static void add_aovs(struct sf_method_frame *frame, struct sf_mega *mega)
                                    .indirect = frame->counts,
                                    .indirect_offset = SF_COUNTS_DRAW_OFFSET,
                                    .raster = {.blend = {SF_BLEND_MIN_ADD}, .triangle_strip = true}});
-    frame->aov_radiance = sf_thick_image(frame->graph, "aov.smoke", SF_FORMAT_RGBA16F, frame->width, frame->height);
-    frame->aov_depths = sf_thick_image(frame->graph, "aov.depths", SF_FORMAT_RGBA32F, frame->width, frame->height);
-    const struct sf_use uses[] = {
-        {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
-        {.resource = thick->tiles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
-        {.resource = thick->smoke, .access = SF_ACCESS_SAMPLED, .binding = 2, .sampler = SF_SAMPLER_LINEAR},
-        {.resource = thick->smoke_depth, .access = SF_ACCESS_SAMPLED, .binding = 3},
-        {.resource = frame->depth, .access = SF_ACCESS_SAMPLED, .binding = 4},
-        {.resource = extent, .access = SF_ACCESS_SAMPLED, .binding = 5},
-        {.resource = thick->args, .access = SF_ACCESS_STORAGE_READ, .binding = 7},
-        {.resource = thick->mask, .access = SF_ACCESS_STORAGE_READ, .binding = 8},
-        {.resource = frame->aov_radiance, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_CLEAR},
-        {.resource = frame->aov_depths,
-         .access = SF_ACCESS_COLOR,
-         .binding = 1,
-         .load = SF_LOAD_CLEAR,
-         .clear = {SF_DEPTH_FAR, SF_DEPTH_FAR, 0, 1}},
-    };
-    sf_thick_tile_pass(frame, thick, uses, SF_COUNT(uses), true, 0,
-                       (struct sf_pass_desc){.name = "mega.aovs", .fragment = "mega/aovs.frag"});
+    const struct sf_thick_full aovs = {.names = {"mega.aovs"},
+                                       .fragment = "mega/aovs.frag",
+                                       .reads = {{.resource = extent, .access = SF_ACCESS_SAMPLED, .binding = 5}},
+                                       .read_count = 1};
+    sf_thick_aovs(frame, thick, SF_FORMAT_RGBA16F, &aovs);
 }
 
 enum sf_status sf_mega_view(struct sf_method_frame *frame, void *state, const struct sf_log *log)
@@ -293,12 +274,9 @@ enum sf_status sf_mega_view(struct sf_method_frame *frame, void *state, const st
     add_shade(frame, mega);
     add_blur(frame, mega);
     add_displace(frame, mega);
-    if (mega->thick.push.scale > 1) {
-        sf_thick_over(frame, &mega->thick, "mega.over_plain", "mega/over.frag", 1);
-        sf_thick_over(frame, &mega->thick, "mega.over_cut", "mega/over.frag", 2);
-    } else {
-        sf_thick_over(frame, &mega->thick, "mega.over", "mega/over.frag", 0);
-    }
+    const struct sf_thick_full over = {.names = {"mega.over", "mega.over_plain", "mega.over_cut"},
+                                       .fragment = "mega/over.frag"};
+    sf_thick_over(frame, &mega->thick, &over);
     if (frame->want_aovs)
         add_aovs(frame, mega);
     return SF_OK;

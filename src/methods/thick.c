@@ -245,50 +245,6 @@ static void add_whole(struct sf_method_frame *frame, struct sf_thick *thick)
                               .indirect_offset = SF_THICK_DISPATCH_TILES_OFFSET});
 }
 
-/* A raster pass over the frame's pixels of the listed tiles. `choice` as in tile.vert. */
-static void add_full(struct sf_method_frame *frame, struct sf_thick *thick, const struct sf_use *targets,
-                     uint32_t target_count, uint32_t choice, struct sf_pass_desc desc)
-{
-    struct sf_use uses[10] = {
-        {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
-        {.resource = thick->tiles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
-        {.resource = thick->smoke, .access = SF_ACCESS_SAMPLED, .binding = 2, .sampler = SF_SAMPLER_LINEAR},
-        {.resource = thick->smoke_depth, .access = SF_ACCESS_SAMPLED, .binding = 3},
-        {.resource = frame->depth, .access = SF_ACCESS_SAMPLED, .binding = 4},
-        {.resource = thick->whole ? thick->whole : thick->smoke_depth, .access = SF_ACCESS_SAMPLED, .binding = 5},
-        {.resource = thick->args, .access = SF_ACCESS_STORAGE_READ, .binding = 7},
-        {.resource = thick->mask, .access = SF_ACCESS_STORAGE_READ, .binding = 8},
-    };
-    uint32_t count = 8;
-    for (uint32_t i = 0; i < target_count; i++)
-        uses[count++] = targets[i];
-    sf_thick_tile_pass(frame, thick, uses, count, true, choice, desc);
-}
-
-static void add_over(struct sf_method_frame *frame, struct sf_thick *thick, const char *name, uint32_t choice)
-{
-    const struct sf_use target = {
-        .resource = frame->color, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_KEEP};
-    add_full(frame, thick, &target, 1, choice,
-             (struct sf_pass_desc){
-                 .name = name, .fragment = "thick/over.frag", .raster = {.blend = {SF_BLEND_PREMULTIPLIED}}});
-}
-
-static void add_aovs(struct sf_method_frame *frame, struct sf_thick *thick)
-{
-    frame->aov_radiance = sf_thick_image(frame->graph, "aov.smoke", SF_FORMAT_RGBA16F, frame->width, frame->height);
-    frame->aov_depths = sf_thick_image(frame->graph, "aov.depths", SF_FORMAT_RGBA32F, frame->width, frame->height);
-    const struct sf_use targets[] = {
-        {.resource = frame->aov_radiance, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_CLEAR},
-        {.resource = frame->aov_depths,
-         .access = SF_ACCESS_COLOR,
-         .binding = 1,
-         .load = SF_LOAD_CLEAR,
-         .clear = {SF_DEPTH_FAR, SF_DEPTH_FAR, 0, 1}},
-    };
-    add_full(frame, thick, targets, 2, 0, (struct sf_pass_desc){.name = "thick.aovs", .fragment = "thick/aovs.frag"});
-}
-
 enum sf_status sf_thick_view(struct sf_method_frame *frame, void *state, const struct sf_log *log)
 {
     struct sf_thick *thick = state;
@@ -307,13 +263,16 @@ enum sf_status sf_thick_view(struct sf_method_frame *frame, void *state, const s
     add_march(frame, thick);
     if (thick->push.scale > 1 || frame->want_aovs)
         add_whole(frame, thick);
-    if (thick->push.scale > 1) {
-        add_over(frame, thick, "thick.over_plain", 1);
-        add_over(frame, thick, "thick.over_cut", 2);
-    } else {
-        add_over(frame, thick, "thick.over", 0);
-    }
+    const struct sf_use whole = {
+        .resource = thick->whole ? thick->whole : thick->smoke_depth, .access = SF_ACCESS_SAMPLED, .binding = 5};
+    const struct sf_thick_full over = {.names = {"thick.over", "thick.over_plain", "thick.over_cut"},
+                                       .fragment = "thick/over.frag",
+                                       .reads = {whole},
+                                       .read_count = 1};
+    const struct sf_thick_full aovs = {
+        .names = {"thick.aovs"}, .fragment = "thick/aovs.frag", .reads = {whole}, .read_count = 1};
+    sf_thick_over(frame, thick, &over);
     if (frame->want_aovs)
-        add_aovs(frame, thick);
+        sf_thick_aovs(frame, thick, SF_FORMAT_RGBA16F, &aovs);
     return SF_OK;
 }

@@ -252,10 +252,12 @@ void sf_thick_prepare(struct sf_method_frame *frame, struct sf_thick *thick, con
                        (struct sf_pass_desc){.name = name, .fragment = "thick/prepare.frag"});
 }
 
-void sf_thick_over(struct sf_method_frame *frame, const struct sf_thick *thick, const char *name, const char *fragment,
-                   uint32_t choice)
+/* A raster pass over the frame's pixels of the listed tiles. `more`: what it reads beyond the smoke's image and the depths,
+ * and its targets. `choice` as in tile.vert. */
+static void add_full(struct sf_method_frame *frame, const struct sf_thick *thick, const struct sf_use *more,
+                     uint32_t more_count, uint32_t choice, struct sf_pass_desc desc)
 {
-    const struct sf_use uses[] = {
+    struct sf_use uses[7 + SF_THICK_FULL_READS + 2] = {
         {.resource = frame->frame, .access = SF_ACCESS_UNIFORM, .binding = 0},
         {.resource = thick->tiles, .access = SF_ACCESS_STORAGE_READ, .binding = 1},
         {.resource = thick->smoke, .access = SF_ACCESS_SAMPLED, .binding = 2, .sampler = SF_SAMPLER_LINEAR},
@@ -263,11 +265,52 @@ void sf_thick_over(struct sf_method_frame *frame, const struct sf_thick *thick, 
         {.resource = frame->depth, .access = SF_ACCESS_SAMPLED, .binding = 4},
         {.resource = thick->args, .access = SF_ACCESS_STORAGE_READ, .binding = 7},
         {.resource = thick->mask, .access = SF_ACCESS_STORAGE_READ, .binding = 8},
-        {.resource = frame->color, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_KEEP},
     };
-    sf_thick_tile_pass(
-        frame, thick, uses, SF_COUNT(uses), true, choice,
-        (struct sf_pass_desc){.name = name, .fragment = fragment, .raster = {.blend = {SF_BLEND_PREMULTIPLIED}}});
+    uint32_t count = 7;
+
+    for (uint32_t i = 0; i < more_count; i++)
+        uses[count++] = more[i];
+    sf_thick_tile_pass(frame, thick, uses, count, true, choice, desc);
+}
+
+void sf_thick_over(struct sf_method_frame *frame, const struct sf_thick *thick, const struct sf_thick_full *full)
+{
+    const char *const *names = full->names;
+    struct sf_use uses[SF_THICK_FULL_READS + 1] = {
+        {.resource = frame->color, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_KEEP}};
+    struct sf_pass_desc desc = {
+        .name = names[0], .fragment = full->fragment, .raster = {.blend = {SF_BLEND_PREMULTIPLIED}}};
+
+    for (uint32_t i = 0; i < full->read_count; i++)
+        uses[1 + i] = full->reads[i];
+    if (thick->push.scale == 1 || full->choice != 0) {
+        add_full(frame, thick, uses, 1 + full->read_count, full->choice, desc);
+        return;
+    }
+    for (uint32_t choice = 1; choice < 3; choice++) {
+        desc.name = names[choice];
+        add_full(frame, thick, uses, 1 + full->read_count, choice, desc);
+    }
+}
+
+void sf_thick_aovs(struct sf_method_frame *frame, const struct sf_thick *thick, enum sf_format format,
+                   const struct sf_thick_full *full)
+{
+    frame->aov_radiance = sf_thick_image(frame->graph, "aov.smoke", format, frame->width, frame->height);
+    frame->aov_depths = sf_thick_image(frame->graph, "aov.depths", SF_FORMAT_RGBA32F, frame->width, frame->height);
+    struct sf_use uses[SF_THICK_FULL_READS + 2] = {
+        {.resource = frame->aov_radiance, .access = SF_ACCESS_COLOR, .binding = 0, .load = SF_LOAD_CLEAR},
+        {.resource = frame->aov_depths,
+         .access = SF_ACCESS_COLOR,
+         .binding = 1,
+         .load = SF_LOAD_CLEAR,
+         .clear = {SF_DEPTH_FAR, SF_DEPTH_FAR, 0, 1}},
+    };
+
+    for (uint32_t i = 0; i < full->read_count; i++)
+        uses[2 + i] = full->reads[i];
+    add_full(frame, thick, uses, 2 + full->read_count, full->choice,
+             (struct sf_pass_desc){.name = full->names[0], .fragment = full->fragment});
 }
 
 enum sf_status sf_thick_assets_create(struct sf_gpu *gpu, const struct sf_scene *scene, const struct sf_log *log,

@@ -61,10 +61,20 @@ enum sf_status sf_thick_targets(struct sf_method_frame *frame, struct sf_thick *
 void sf_thick_tiles(struct sf_method_frame *frame, struct sf_thick *thick, const char *const names[2]);
 /* Empties the smoke's image where smoke will be, and takes the scene's depth down. */
 void sf_thick_prepare(struct sf_method_frame *frame, struct sf_thick *thick, const char *name);
-/* Lays the smoke's image over the frame by a fragment shader with the bindings of larsson/over.frag. `choice` as in
- * tile.vert. */
-void sf_thick_over(struct sf_method_frame *frame, const struct sf_thick *thick, const char *name, const char *fragment,
-                   uint32_t choice);
+/* What takes the smoke's image up to the frame's pixels: a fragment shader with the bindings of larsson/over.frag. */
+enum { SF_THICK_FULL_READS = 2 };
+struct sf_thick_full {
+    const char *names[3]; /* of the pass; of the two of reduced smoke: where no surface cuts it, and where one may */
+    const char *fragment;
+    struct sf_use reads[SF_THICK_FULL_READS]; /* beyond those bindings */
+    uint32_t read_count;
+    uint32_t choice; /* as in tile.vert; other than 0: for all tiles at once */
+};
+/* Lays the smoke over the frame. */
+void sf_thick_over(struct sf_method_frame *frame, const struct sf_thick *thick, const struct sf_thick_full *full);
+/* Makes frame->aov_radiance, of that format, and frame->aov_depths, by names[0] alone. */
+void sf_thick_aovs(struct sf_method_frame *frame, const struct sf_thick *thick, enum sf_format format,
+                   const struct sf_thick_full *full);
 /* Fills a buffer of a word a tile with 0. */
 void sf_thick_empty(struct sf_method_frame *frame, const struct sf_thick *thick, const char *name, sf_resource buffer);
 
